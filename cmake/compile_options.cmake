@@ -1,0 +1,13 @@
+# truebearing_options(TARGET): the warnings, optimisation and sanitizers that every target of the house shares.
+function(truebearing_options target)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion
+                                           $<$<BOOL:${TRUEBEARING_WARNINGS_AS_ERRORS}>:-Werror>)
+  # The same bits on every build of one machine: no contraction into fused multiply-adds, whatever -march says.
+  target_compile_options(${target} PRIVATE -ffp-contract=off -fno-math-errno)
+  if(TRUEBEARING_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=${TRUEBEARING_SANITIZE} -fno-sanitize-recover=all
+                                             -fno-omit-frame-pointer)
+    target_link_options(${target} PUBLIC -fsanitize=${TRUEBEARING_SANITIZE})
+  endif()
+endfunction()

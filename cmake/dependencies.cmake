@@ -1,0 +1,10 @@
+# What truebearing stands on. All of it is in Debian 12; the installed package config finds the same again.
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(fmt 9 REQUIRED)
+find_package(nlohmann_json 3.11 REQUIRED)
+find_package(tomlplusplus 3.3 REQUIRED)
+find_package(TBB REQUIRED)
+find_package(CLI11 2.1 REQUIRED)
+find_package(NLopt REQUIRED)
+find_package(Boost 1.74 REQUIRED)
+find_package(Threads REQUIRED)

@@ -1,0 +1,58 @@
+#include "truebearing/core/state_space.hpp"
+
+#include <algorithm>
+#include <array>
+#include <deque>
+#include <mutex>
+
+#include "truebearing/core/bounded.hpp"
+#include "truebearing/core/error.hpp"
+
+namespace truebearing {
+
+int StateSpace::component_index(std::string_view component) const {
+  const auto found = std::find(components.begin(), components.end(), component);
+  return found == components.end() ? -1 : static_cast<int>(found - components.begin());
+}
+
+int StateSpace::quantity_index(std::string_view quantity) const {
+  const auto found = std::find_if(quantities.begin(), quantities.end(), [&](const Quantity& q) { return q.name == quantity; });
+  return found == quantities.end() ? -1 : static_cast<int>(found - quantities.begin());
+}
+
+const StateSpace& line_space() {
+  static const StateSpace space{"line", {"position_m", "velocity_mps"}, {{"position_m", {0}}, {"velocity_mps", {1}}}};
+  return space;
+}
+
+const StateSpace& plane_space() {
+  static const StateSpace space{"plane",
+                                {"east_m", "north_m", "east_mps", "north_mps"},
+                                {{"position_m", {0, 1}}, {"velocity_mps", {2, 3}}}};
+  return space;
+}
+
+const StateSpace* find_state_space(std::string_view name) {
+  for (const StateSpace* space : {&line_space(), &plane_space()})
+    if (space->name == name) return space;
+  return nullptr;
+}
+
+const StateSpace& state_space_of_components(const std::vector<std::string>& components) {
+  for (const StateSpace* space : {&line_space(), &plane_space()})
+    if (space->components == components) return *space;
+  if (components.empty() || components.size() > kMaxDimension)
+    throw InputError("state", "has " + std::to_string(components.size()) + " components",
+                     "1 to " + std::to_string(kMaxDimension));
+
+  static std::mutex mutex;
+  static std::deque<StateSpace> others;  // a deque keeps the addresses that records hold
+  const std::lock_guard lock(mutex);
+  for (const StateSpace& space : others)
+    if (space.components == components) return space;
+  StateSpace space{"custom", components, {}};
+  for (int i = 0; i < space.size(); ++i) space.quantities.push_back({components[static_cast<std::size_t>(i)], {i}});
+  return others.emplace_back(std::move(space));
+}
+
+}  // namespace truebearing

@@ -1,0 +1,229 @@
+#include "truebearing/io/table_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <utility>
+
+#include "truebearing/core/suggestion.hpp"
+#include "truebearing/io/file.hpp"
+
+namespace truebearing {
+namespace {
+
+constexpr std::size_t kMaxTomlBytes = std::size_t{1} << 20;
+constexpr int kMaxDepth = 64;
+
+std::string type_name(const toml::node& node) {
+  switch (node.type()) {
+    case toml::node_type::string: return "text";
+    case toml::node_type::integer: return "an integer";
+    case toml::node_type::floating_point: return "a number";
+    case toml::node_type::boolean: return "true or false";
+    case toml::node_type::array: return "an array";
+    case toml::node_type::table: return "a table";
+    default: return "a date or time";
+  }
+}
+
+int depth_of(const toml::node& node) {
+  int deepest = 0;
+  if (const auto* table = node.as_table())
+    for (const auto& [key, value] : *table) deepest = std::max(deepest, depth_of(value));
+  if (const auto* array = node.as_array())
+    for (const auto& value : *array) deepest = std::max(deepest, depth_of(value));
+  return deepest + 1;
+}
+
+std::string describe(Range range) {
+  if (range.high >= 1e300) {
+    if (range.low <= -1e300) return "a finite number";
+    return fmt::format("a number {} {}", range.open_low ? ">" : ">=", range.low);
+  }
+  return fmt::format("a number in {}{}, {}]", range.open_low ? "(" : "[", range.low, range.high);
+}
+
+bool contains(Range range, double value) {
+  return std::isfinite(value) && (range.open_low ? value > range.low : value >= range.low) && value <= range.high;
+}
+
+}  // namespace
+
+toml::table parse_toml(std::string_view text, const std::string& name) {
+  if (text.size() > kMaxTomlBytes)
+    throw InputError(name, fmt::format("is {} bytes long", text.size()), fmt::format("at most {} bytes", kMaxTomlBytes));
+  try {
+    toml::table table = toml::parse(text, name);
+    if (depth_of(table) > kMaxDepth + 1)
+      throw InputError(name, "is nested too deeply", fmt::format("at most {} levels", kMaxDepth));
+    return table;
+  } catch (const toml::parse_error& error) {
+    throw InputError(fmt::format("{}:{}", name, error.source().begin.line), std::string(error.description()), "TOML");
+  }
+}
+
+toml::table read_toml_file(const std::filesystem::path& path) {
+  return parse_toml(read_text_file(path, kMaxTomlBytes), path.string());
+}
+
+TableReader::TableReader(const toml::table& table, std::string file, std::string path)
+    : table_(&table), file_(std::move(file)), path_(std::move(path)) {}
+
+std::string TableReader::where(const std::string& key) const {
+  const toml::node* node = table_->get(key);
+  const auto line = node ? node->source().begin.line : table_->source().begin.line;
+  const std::string name = path_.empty() || key.empty() ? path_ + key : path_ + "." + key;
+  std::string place = line > 0 ? fmt::format("{}:{}", file_, line) : file_;
+  return name.empty() ? place : place + ": " + name;
+}
+
+InputError TableReader::error(const std::string& key, const std::string& found, const std::string& valid) const {
+  return {where(key), found, valid};
+}
+
+const toml::node* TableReader::node(const std::string& key) {
+  asked_.insert(key);
+  return table_->get(key);
+}
+
+bool TableReader::has(const std::string& key) { return node(key) != nullptr; }
+
+const toml::node& TableReader::required(const std::string& key) {
+  const toml::node* found = node(key);
+  if (!found) throw error(key, "is missing");
+  return *found;
+}
+
+double TableReader::number(const std::string& key, Range range) {
+  const toml::node& found = required(key);
+  const auto value = found.value<double>();
+  if (!value || found.is_boolean()) throw error(key, "is " + type_name(found), describe(range));
+  if (!contains(range, *value)) throw error(key, fmt::format("is {}", *value), describe(range));
+  return *value;
+}
+
+double TableReader::number_or(const std::string& key, double fallback, Range range) {
+  return has(key) ? number(key, range) : fallback;
+}
+
+std::int64_t TableReader::integer(const std::string& key, std::int64_t low, std::int64_t high) {
+  const toml::node& found = required(key);
+  const std::string valid = fmt::format("an integer in [{}, {}]", low, high);
+  const auto* value = found.as_integer();
+  if (!value) throw error(key, "is " + type_name(found), valid);
+  if (value->get() < low || value->get() > high) throw error(key, fmt::format("is {}", value->get()), valid);
+  return value->get();
+}
+
+std::int64_t TableReader::integer_or(const std::string& key, std::int64_t fallback, std::int64_t low, std::int64_t high) {
+  return has(key) ? integer(key, low, high) : fallback;
+}
+
+bool TableReader::boolean_or(const std::string& key, bool fallback) {
+  if (!has(key)) return fallback;
+  const auto* value = required(key).as_boolean();
+  if (!value) throw error(key, "is " + type_name(required(key)), "true or false");
+  return value->get();
+}
+
+std::string TableReader::text(const std::string& key) {
+  const toml::node& found = required(key);
+  const auto* value = found.as_string();
+  if (!value) throw error(key, "is " + type_name(found), "text in quotes");
+  return value->get();
+}
+
+std::string TableReader::text_or(const std::string& key, std::string fallback) {
+  return has(key) ? text(key) : std::move(fallback);
+}
+
+std::string TableReader::choice(const std::string& key, const std::vector<std::string>& valid) {
+  std::string value = text(key);
+  if (std::find(valid.begin(), valid.end(), value) == valid.end())
+    throw error(key, "is \"" + value + "\"", suggestion(value, valid));
+  return value;
+}
+
+std::string TableReader::choice_or(const std::string& key, const std::vector<std::string>& valid, std::string fallback) {
+  return has(key) ? choice(key, valid) : std::move(fallback);
+}
+
+std::vector<double> TableReader::numbers(const std::string& key, int size, Range range) {
+  const toml::node& found = required(key);
+  const std::string count = size < 0 ? "an array, each " : fmt::format("{} numbers, each ", size);
+  std::vector<double> values;
+  const auto take = [&](const toml::node& element) {
+    const auto value = element.value<double>();
+    if (!value || element.is_boolean()) throw error(key, "holds " + type_name(element), count + describe(range));
+    if (!contains(range, *value)) throw error(key, fmt::format("holds {}", *value), count + describe(range));
+    values.push_back(*value);
+  };
+  if (const auto* array = found.as_array())
+    for (const toml::node& element : *array) take(element);
+  else
+    take(found);
+  if (size >= 0 && values.size() != static_cast<std::size_t>(size))
+    throw error(key, fmt::format("holds {} numbers", values.size()), count + describe(range));
+  return values;
+}
+
+std::vector<std::string> TableReader::texts(const std::string& key) {
+  const toml::node& found = required(key);
+  const auto* array = found.as_array();
+  if (!array) throw error(key, "is " + type_name(found), "an array of texts");
+  std::vector<std::string> values;
+  for (const toml::node& element : *array) {
+    const auto* value = element.as_string();
+    if (!value) throw error(key, "holds " + type_name(element), "an array of texts");
+    values.push_back(value->get());
+  }
+  return values;
+}
+
+TableReader TableReader::table(const std::string& key) {
+  const toml::node& found = required(key);
+  const auto* sub = found.as_table();
+  if (!sub) throw error(key, "is " + type_name(found), "a table");
+  return {*sub, file_, path_.empty() ? key : path_ + "." + key};
+}
+
+std::optional<TableReader> TableReader::table_if_present(const std::string& key) {
+  if (!has(key)) return std::nullopt;
+  return table(key);
+}
+
+std::vector<TableReader> TableReader::tables(const std::string& key) {
+  std::vector<TableReader> readers;
+  if (!has(key)) return readers;
+  const auto* array = required(key).as_array();
+  if (!array) throw error(key, "is " + type_name(required(key)), "an array of tables");
+  std::size_t index = 0;
+  for (const toml::node& element : *array) {
+    const auto* sub = element.as_table();
+    if (!sub) throw error(key, "holds " + type_name(element), "an array of tables");
+    readers.emplace_back(*sub, file_, fmt::format("{}{}{}[{}]", path_, path_.empty() ? "" : ".", key, index++));
+  }
+  return readers;
+}
+
+std::vector<std::string> TableReader::keys() const {
+  std::vector<std::pair<std::uint32_t, std::string>> placed;
+  for (const auto& [key, value] : *table_) placed.emplace_back(value.source().begin.line, std::string(key.str()));
+  std::stable_sort(placed.begin(), placed.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<std::string> names;
+  for (auto& [line, name] : placed) names.push_back(std::move(name));
+  return names;
+}
+
+void TableReader::finish() const {
+  for (const std::string& key : keys())
+    if (!asked_.contains(key))
+      throw error(key, "is not a known key", suggestion(key, {asked_.begin(), asked_.end()}));
+}
+
+std::filesystem::path TableReader::resolve(const std::string& relative) const {
+  const std::filesystem::path path(relative);
+  return path.is_absolute() ? path : std::filesystem::path(file_).parent_path() / path;
+}
+
+}  // namespace truebearing

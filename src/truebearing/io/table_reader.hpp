@@ -1,0 +1,84 @@
+// TableReader: a TOML table read key by key. It remembers which keys were asked for; finish() turns every other key
+// into an error that suggests the nearest valid one. Errors name file, line and key.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <string>
+#include <toml++/toml.h>
+#include <vector>
+
+#include "truebearing/core/error.hpp"
+
+namespace truebearing {
+
+/// The range a number must lie in; ends are valid unless `open`.
+struct Range {
+  double low;
+  double high;
+  bool open_low = false;
+};
+inline constexpr Range kAnyNumber{-1e300, 1e300};
+inline constexpr Range kPositive{0.0, 1e300, true};
+inline constexpr Range kNonNegative{0.0, 1e300};
+
+/// Reads a TOML file of at most 1 MiB and nesting depth 64. Throws InputError with file and line.
+toml::table read_toml_file(const std::filesystem::path& path);
+/// The same for text; `name` stands for the file in messages.
+toml::table parse_toml(std::string_view text, const std::string& name);
+
+class TableReader {
+ public:
+  /// `file` and `path` are what messages call the table: "study.toml", "trackers.plain". The table must outlive the reader.
+  TableReader(const toml::table& table, std::string file, std::string path = {});
+
+  bool has(const std::string& key);
+
+  double number(const std::string& key, Range range = kAnyNumber);
+  double number_or(const std::string& key, double fallback, Range range = kAnyNumber);
+  std::int64_t integer(const std::string& key, std::int64_t low, std::int64_t high);
+  std::int64_t integer_or(const std::string& key, std::int64_t fallback, std::int64_t low, std::int64_t high);
+  bool boolean_or(const std::string& key, bool fallback);
+  std::string text(const std::string& key);
+  std::string text_or(const std::string& key, std::string fallback);
+  /// One of the given names.
+  std::string choice(const std::string& key, const std::vector<std::string>& valid);
+  std::string choice_or(const std::string& key, const std::vector<std::string>& valid, std::string fallback);
+  /// An array of `size` numbers; any number of them where size is negative. A lone number counts as one.
+  std::vector<double> numbers(const std::string& key, int size = -1, Range range = kAnyNumber);
+  std::vector<std::string> texts(const std::string& key);
+
+  /// A sub-table; an error where it is missing.
+  TableReader table(const std::string& key);
+  std::optional<TableReader> table_if_present(const std::string& key);
+  /// An array of tables; empty where the key is absent.
+  std::vector<TableReader> tables(const std::string& key);
+  /// The value of any type, or nullptr: for keys that may be of several types. Counts as asked for.
+  const toml::node* node(const std::string& key);
+  /// Names of all keys in this table, in the order of the file; does not count as asking for them.
+  std::vector<std::string> keys() const;
+
+  /// Throws on the first key that nobody asked for.
+  void finish() const;
+
+  /// An error about this table or one of its keys, to throw.
+  InputError error(const std::string& key, const std::string& found, const std::string& valid = {}) const;
+
+  const toml::table& raw() const { return *table_; }
+  const std::string& file() const { return file_; }
+  const std::string& path() const { return path_; }
+  /// Paths in a file are relative to the folder of that file.
+  std::filesystem::path resolve(const std::string& relative) const;
+
+ private:
+  const toml::node& required(const std::string& key);
+  std::string where(const std::string& key) const;
+
+  const toml::table* table_;
+  std::string file_;
+  std::string path_;
+  std::set<std::string> asked_;
+};
+
+}  // namespace truebearing

@@ -1,0 +1,27 @@
+// One measurement as it comes from a sensor or a log: a small vector with its time, its own standard deviations where the
+// sensor gives them, and where the sensor was.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "truebearing/core/bounded.hpp"
+
+namespace truebearing {
+
+struct SensorState {
+  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();   ///< East, North
+  Eigen::Vector2d velocity_mps = Eigen::Vector2d::Zero();
+};
+
+struct Measurement {
+  double time_s = 0.0;
+  BoundedVector z;      ///< in the units of the measured columns, angles in radians; NaN where a value is missing
+  BoundedVector sigma;  ///< standard deviations of z, or empty where the tracker's own apply
+  std::optional<SensorState> sensor;
+
+  /// True where no value of z can be used.
+  bool is_missing() const { return z.size() == 0 || !z.allFinite(); }
+};
+
+}  // namespace truebearing

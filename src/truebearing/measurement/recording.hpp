@@ -1,0 +1,33 @@
+// A recording: what a sensor measured over time and, where it is known, the truth beside it. The simulator makes
+// recordings and measurement logs are read into them, so that trackers cannot tell the two apart.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "truebearing/core/bounded.hpp"
+#include "truebearing/core/state_space.hpp"
+#include "truebearing/measurement/measurement.hpp"
+
+namespace truebearing {
+
+/// The true states of one target at the times of the measurements; NaN components where the truth is unknown.
+struct Truth {
+  int track = 0;
+  std::vector<BoundedVector> x;
+};
+
+struct Recording {
+  std::vector<std::string> measured;  ///< names of the components of z with units: "position_m"
+  std::vector<Measurement> measurements;
+  const StateSpace* truth_space = nullptr;  ///< nullptr where there is no truth
+  std::vector<Truth> truth;                 ///< one per target; each as long as `measurements`
+
+  /// What was found and mended while a log was read.
+  struct Counts {
+    int missing = 0;     ///< rows without a usable measurement
+    int repeated = 0;    ///< rows identical to the one before, dropped
+  } counts;
+};
+
+}  // namespace truebearing

@@ -1,0 +1,33 @@
+// A scenario: what happens. simulate() makes the truth and the measurements of one run, a pure function of (scenario, role,
+// seed, run). A scenario with distributions in it is a family: each run draws from them.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "truebearing/core/random.hpp"
+#include "truebearing/core/state_space.hpp"
+#include "truebearing/io/table_reader.hpp"
+#include "truebearing/measurement/recording.hpp"
+
+namespace truebearing {
+
+class Scenario {
+ public:
+  virtual ~Scenario() = default;
+  /// Truth and measurements of one run. Safe to call from several threads at once.
+  virtual Recording simulate(const RunKey& key) const = 0;
+  /// The space of the truth of every run.
+  virtual const StateSpace& truth_space() const = 0;
+
+ protected:
+  Scenario() = default;
+  Scenario(const Scenario&) = default;
+  Scenario& operator=(const Scenario&) = default;
+};
+
+/// Reads a scenario table; its key `kind` names which: "line" or "planar_flight". Throws InputError.
+std::unique_ptr<Scenario> read_scenario(TableReader table);
+std::unique_ptr<Scenario> load_scenario(const std::filesystem::path& path);
+
+}  // namespace truebearing

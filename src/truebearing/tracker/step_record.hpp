@@ -1,0 +1,51 @@
+// StepRecord, the hub of the house: what one tracker did with one measurement for one target. A core that every tracker fills,
+// and optional blocks that say whether they are there. Absent is absent, never faked. No heap.
+#pragma once
+
+#include <optional>
+
+#include "truebearing/core/bounded.hpp"
+#include "truebearing/core/state_space.hpp"
+#include "truebearing/core/status.hpp"
+#include "truebearing/measurement/measurement.hpp"
+
+namespace truebearing {
+
+/// The state before the measurement was used: x_{k|k-1} (n), P_{k|k-1} (n x n).
+struct Prediction {
+  BoundedVector x;
+  BoundedMatrix P;
+};
+
+/// The measurement z (m), the innovation nu = residual(z, h(x_pred)) (m), its covariance S (m x m), NIS = nu' S^-1 nu.
+struct Innovation {
+  BoundedVector z;
+  BoundedVector nu;
+  BoundedMatrix S;
+  double nis = 0.0;
+};
+
+/// What a correction did: how far the gate was open, whether kappa limited it, how far it moved the reference.
+struct CorrectionOutcome {
+  double gate = 0.0;              ///< g in [0, 1]
+  bool limited = false;           ///< limit_kappa shortened the correction, or turned a non-finite one into zero
+  double distance_sigmas = 0.0;   ///< Mahalanobis distance of the published estimate from the reference, reference P
+};
+
+struct StepRecord {
+  int track = 0;
+  double time_s = 0.0;
+  StepStatus status = StepStatus::ok;
+  const StateSpace* space = nullptr;  ///< components and units of x; lives as long as the program
+  BoundedVector x;                    ///< estimate (n)
+  BoundedMatrix P;                    ///< its covariance (n x n)
+
+  std::optional<Prediction> prediction;
+  std::optional<Innovation> innovation;
+  std::optional<BoundedMatrix> gain;                ///< K (n x m)
+  std::optional<BoundedVector> mode_probabilities;  ///< of a multiple-model tracker
+  std::optional<SensorState> sensor;
+  std::optional<CorrectionOutcome> correction;      ///< of a corrected tracker
+};
+
+}  // namespace truebearing

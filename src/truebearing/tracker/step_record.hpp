@@ -25,11 +25,14 @@ struct Innovation {
   double nis = 0.0;
 };
 
-/// What a correction did: how far the gate was open, whether kappa limited it, how far it moved the reference.
+/// What a correction did: how far the gate was open, whether kappa limited it, how far it moved the reference; and the base
+/// estimate that it started from.
 struct CorrectionOutcome {
-  double gate = 0.0;              ///< g in [0, 1]
-  bool limited = false;           ///< limit_kappa shortened the correction, or turned a non-finite one into zero
-  double distance_sigmas = 0.0;   ///< Mahalanobis distance of the published estimate from the reference, reference P
+  double gate = 0.0;             ///< g in [0, 1]
+  bool limited = false;          ///< limit_kappa shortened the correction, or turned a non-finite one into zero
+  double distance_sigmas = 0.0;  ///< Mahalanobis distance of the published estimate from the reference, reference P
+  BoundedVector base_x;          ///< (n)
+  BoundedMatrix base_P;          ///< (n x n)
 };
 
 struct StepRecord {

@@ -18,6 +18,14 @@ struct TrackerCounts {
   int failed = 0;        ///< the arithmetic said `failed`
 };
 
+/// The optional blocks that a tracker fills in the records of steps in which it used the measurement.
+struct RecordBlocks {
+  bool prediction = false;
+  bool innovation = false;
+  bool gain = false;
+  bool mode_probabilities = false;
+};
+
 class Tracker {
  public:
   virtual ~Tracker() = default;
@@ -34,6 +42,9 @@ class Tracker {
 
   /// The space of the records' states.
   virtual const StateSpace& space() const = 0;
+
+  /// Which blocks its records carry, so that what a feature needs is checked when a study is read.
+  virtual RecordBlocks blocks() const { return {}; }
 
   virtual TrackerCounts counts() const { return {}; }
 

@@ -1,0 +1,50 @@
+// truebearing check STUDY.toml: is it valid, and what would it run.
+#include <fmt/format.h>
+#include <memory>
+
+#include "app/subcommands.hpp"
+#include "truebearing/study/study.hpp"
+
+namespace truebearing {
+namespace {
+
+void describe_correction(const Study& study, const TrackerSpec& spec) {
+  const CorrectionSpec& correction = *spec.correction;
+  fmt::print("    corrects {}, trusts {}, covariance of {}, kappa {}\n", correction.base, correction.reference,
+             correction.covariance_of, correction.kappa);
+  for (const FeatureSpec& feature : correction.features) fmt::print("    feature: {}\n", describe(feature));
+  try {
+    study.load_model(spec.name);
+    fmt::print("    model: {}\n", correction.model.string());
+  } catch (const InputError& missing) {
+    fmt::print("    not ready: {}\n", missing.what());
+  }
+}
+
+void check(const std::string& path) {
+  const Study study = Study::load(path);
+  fmt::print("{}: {} runs, seed {}, scored from step {}\n", study.name(), study.runs(), study.seed(), study.scoring().from_step);
+  for (const TrackerSpec& spec : study.trackers()) {
+    fmt::print("  {} ({}{})\n", spec.name, spec.kind, spec.shown ? "" : ", not shown");
+    if (spec.correction) {
+      describe_correction(study, spec);
+      continue;
+    }
+    try {
+      fmt::print("    {}\n", study.configuration_line(spec.name));
+    } catch (const InputError& missing) {
+      fmt::print("    not ready: {}\n", missing.what());
+    }
+  }
+}
+
+}  // namespace
+
+void add_check(CLI::App& app) {
+  auto path = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand("check", "say whether a study is valid and what it would run");
+  command->add_option("study", *path, "study file (TOML)")->required();
+  command->callback([path] { check(*path); });
+}
+
+}  // namespace truebearing

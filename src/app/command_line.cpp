@@ -1,0 +1,36 @@
+#include "app/command_line.hpp"
+
+#include <exception>
+#include <fmt/format.h>
+
+#include "app/subcommands.hpp"
+#include "truebearing/core/error.hpp"
+
+namespace truebearing {
+
+int command_line(int argc, const char* const* argv) {
+  CLI::App app{"Trackers that learn to correct themselves.", "truebearing"};
+  app.set_version_flag("--version", TRUEBEARING_VERSION);
+  app.require_subcommand(1);
+  add_simulate(app);
+  add_tune(app);
+  add_train(app);
+  add_track(app);
+  add_compare(app);
+  add_check(app);
+  add_rules(app);
+  try {
+    app.parse(argc, argv);
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  } catch (const InputError& error) {
+    fmt::print(stderr, "truebearing: {}\n", error.what());
+    return 1;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "truebearing: internal error: {}\n", error.what());
+    return 1;
+  }
+}
+
+}  // namespace truebearing

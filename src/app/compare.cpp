@@ -1,0 +1,82 @@
+// truebearing compare STUDY.toml: the study's trackers on Monte Carlo runs, scored against the truth.
+#include <fmt/format.h>
+#include <memory>
+
+#include "app/output.hpp"
+#include "app/subcommands.hpp"
+#include "app/workflow.hpp"
+#include "truebearing/correction/corrected_tracker.hpp"
+#include "truebearing/evaluation/report.hpp"
+#include "truebearing/measurement/recording_csv.hpp"
+#include "truebearing/simulation/recorded_scenario.hpp"
+
+namespace truebearing {
+namespace {
+
+struct Options {
+  std::string study;
+  std::string json;
+  std::string truth;
+  std::uint64_t seed = 0;
+  std::size_t runs = 0;
+  int threads = 0;
+  bool retrain = false;
+  bool quiet = false;
+};
+
+std::unique_ptr<Tracker> standalone(const Study& study, const std::string& name, const CorrectionModels& models) {
+  const auto model = models.find(name);
+  if (model == models.end()) return study.make_tracker(name);
+  return std::make_unique<CorrectedTracker>(study.make_ensemble(study.tracker(name).correction->members()), model->second);
+}
+
+void run_compare(const Options& options, bool seed_given) {
+  Study study = Study::load(options.study);
+  const std::uint64_t seed = seed_given ? options.seed : study.seed();
+  CorrectionModels models;
+  if (options.retrain) {
+    const WorkflowOptions workflow{seed, options.threads, options.quiet};
+    study.set_parameters(tune_study(study, workflow));
+    models = train_study(study, {}, workflow);
+  }
+  std::unique_ptr<Scenario> recorded;
+  if (!options.truth.empty()) recorded = std::make_unique<RecordedScenario>(read_recording(options.truth));
+  const Scenario& scenario = recorded ? *recorded : study.scenario();
+
+  ComparisonOptions comparison_options = study.comparison_options();
+  comparison_options.seed = seed;
+  if (options.runs > 0) comparison_options.runs = options.runs;
+  comparison_options.threads = options.threads;
+  const TrackerSet trackers = study.make_tracker_set(models);
+  Comparison comparison;
+  {
+    ProgressLine progress("compare", options.quiet);
+    comparison_options.progress = progress.callback();
+    comparison = compare(trackers, scenario, comparison_options);
+  }
+  comparison.study = study.name();
+  const Recording timed = scenario.simulate({seed, Role::evaluation, 0});
+  for (int i = 0; i < trackers.size(); ++i)
+    comparison.ns_per_step.emplace_back(trackers.name(i), time_per_step_ns(*standalone(study, trackers.name(i), models), timed));
+
+  if (options.json != "-") fmt::print("{}", comparison_table(comparison));
+  if (!options.json.empty()) write_output(options.json, comparison_json(comparison));
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("compare", "run the study's trackers on held-out runs and compare their errors");
+  command->add_option("study", options->study, "study file (TOML)")->required();
+  CLI::Option* seed = command->add_option("--seed", options->seed, "seed; the study's own where not given");
+  command->add_option("--runs", options->runs, "runs; the study's own number where not given")->check(CLI::Range(1, 10000000));
+  command->add_option("--threads", options->threads, "0: one per core")->check(CLI::Range(0, 1024));
+  command->add_option("--truth", options->truth, "a recorded track with truth, measured afresh in every run");
+  command->add_flag("--retrain", options->retrain, "tune and train afresh with this seed; files are left alone");
+  command->add_option("--json", options->json, "write the results as JSON; - is standard output");
+  command->add_flag("--quiet", options->quiet, "no progress");
+  command->callback([options, seed] { run_compare(*options, seed->count() > 0); });
+}
+
+}  // namespace truebearing

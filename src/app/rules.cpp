@@ -1,0 +1,23 @@
+// truebearing rules MODEL: the learned rules, as sentences.
+#include <fmt/format.h>
+#include <memory>
+
+#include "app/subcommands.hpp"
+#include "truebearing/correction/model_file.hpp"
+#include "truebearing/correction/rule_report.hpp"
+
+namespace truebearing {
+
+void add_rules(CLI::App& app) {
+  auto path = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand("rules", "print the rules of a model file as sentences");
+  command->add_option("model", *path, "model file (JSON)")->required();
+  command->callback([path] {
+    const CorrectionModel model = read_model_file(*path);
+    fmt::print("{} corrects {} towards the truth; trusted: {}\n", *path, model.base, model.reference);
+    for (const auto& [key, value] : model.provenance) fmt::print("  {}: {}\n", key, value);
+    fmt::print("\n{}", rule_sentences(model));
+  });
+}
+
+}  // namespace truebearing

@@ -1,0 +1,41 @@
+// CorrectedTracker: an ensemble and a correction of it, which together are a Tracker like any other.
+#pragma once
+
+#include <memory>
+
+#include "truebearing/correction/correction.hpp"
+#include "truebearing/tracker/ensemble.hpp"
+#include "truebearing/tracker/tracker.hpp"
+
+namespace truebearing {
+
+class CorrectedTracker final : public Tracker {
+ public:
+  /// The ensemble must have the model's base, reference, companions and covariance source among its members.
+  CorrectedTracker(Ensemble ensemble, std::shared_ptr<const CorrectionModel> model)
+      : ensemble_(std::move(ensemble)), model_(std::move(model)), correction_(model_, ensemble_) {}
+
+  std::span<const StepRecord> step(const Measurement& measurement) override {
+    ensemble_.step(measurement);
+    return correction_.correct(ensemble_);
+  }
+
+  void reset() override {
+    ensemble_.reset();
+    correction_.reset();
+  }
+
+  std::unique_ptr<Tracker> clone() const override { return std::make_unique<CorrectedTracker>(ensemble_.clone(), model_); }
+  const StateSpace& space() const override { return *model_->space; }
+  RecordBlocks blocks() const override { return ensemble_.tracker(ensemble_.index(model_->base)).blocks(); }
+  TrackerCounts counts() const override { return ensemble_.tracker(ensemble_.index(model_->base)).counts(); }
+
+  const CorrectionModel& model() const { return *model_; }
+
+ private:
+  Ensemble ensemble_;
+  std::shared_ptr<const CorrectionModel> model_;
+  Correction correction_;
+};
+
+}  // namespace truebearing

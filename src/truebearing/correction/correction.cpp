@@ -1,0 +1,96 @@
+#include "truebearing/correction/correction.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "truebearing/core/error.hpp"
+#include "truebearing/correction/limit_kappa.hpp"
+
+namespace truebearing {
+namespace {
+
+int member(const Ensemble& ensemble, const std::string& name, const StateSpace& space) {
+  const int index = ensemble.index(name);
+  if (index < 0) throw InputError("correction", "needs the tracker \"" + name + "\", which does not run beside it");
+  if (ensemble.tracker(index).space() != space)
+    throw InputError("correction", "the tracker \"" + name + "\" has the state " + ensemble.tracker(index).space().name,
+                     "the state " + space.name);
+  return index;
+}
+
+}  // namespace
+
+Correction::Correction(std::shared_ptr<const CorrectionModel> model, const Ensemble& ensemble)
+    : model_(std::move(model)),
+      base_(member(ensemble, model_->base, *model_->space)),
+      reference_(member(ensemble, model_->reference, *model_->space)),
+      source_(member(ensemble, model_->covariance_of, *model_->space)),
+      prototype_(model_->features, *model_->space, ensemble.tracker(base_).blocks()) {
+  model_->validate();
+  for (const std::string& name : prototype_.companions()) companions_.push_back(member(ensemble, name, *model_->space));
+  companion_records_.resize(companions_.size());
+  reset();
+}
+
+void Correction::reset() {
+  tracks_.assign(1, Track{-1, false, prototype_});
+  records_.assign(1, StepRecord{});
+}
+
+FeatureExtractor& Correction::extractor_of(int track) {
+  auto slot = std::find_if(tracks_.begin(), tracks_.end(), [&](const Track& t) { return t.id == track; });
+  if (slot == tracks_.end()) slot = std::find_if(tracks_.begin(), tracks_.end(), [](const Track& t) { return !t.seen; });
+  if (slot == tracks_.end()) slot = tracks_.insert(tracks_.end(), Track{track, true, prototype_});
+  slot->id = track;
+  slot->seen = true;
+  return slot->extractor;
+}
+
+std::span<const StepRecord> Correction::correct(const Ensemble& ensemble) {
+  const std::span<const StepRecord> references = ensemble.records(reference_);
+  if (records_.size() < references.size()) records_.resize(references.size());
+  for (Track& track : tracks_)
+    track.seen = std::any_of(references.begin(), references.end(), [&](const StepRecord& r) { return r.track == track.id; });
+
+  for (std::size_t i = 0; i < references.size(); ++i) {
+    const StepRecord& reference = references[i];
+    const StepRecord* base = ensemble.record(base_, reference.track);
+    const StepRecord* source = ensemble.record(source_, reference.track);
+    for (std::size_t c = 0; c < companions_.size(); ++c)
+      companion_records_[c] = ensemble.record(companions_[c], reference.track);
+    if (!base || !source || base->status == StepStatus::failed) {
+      records_[i] = reference;
+      records_[i].correction = CorrectionOutcome{.base_x = reference.x, .base_P = reference.P};
+      continue;
+    }
+    extractor_of(reference.track).extract(*base, companion_records_, features_);
+    correct_record(*base, reference, *source, features_, records_[i]);
+  }
+  return {records_.data(), references.size()};
+}
+
+void Correction::correct_record(const StepRecord& base, const StepRecord& reference, const StepRecord& source,
+                                const FuzzyNetwork::Inputs& features, StepRecord& corrected) {
+  const FuzzyNetwork& network = model_->network;
+  corrected = base;
+  CorrectionOutcome& outcome = corrected.correction.emplace();
+  outcome.base_x = base.x;
+  outcome.base_P = base.P;
+  corrected.x = reference.x;
+  corrected.P = reference.P;
+  if (!features.allFinite()) return;  // g = 0
+
+  network.strengths(features, phi_);
+  const Limited limited = limit_kappa(reference.P, base.x + network.output(phi_) - reference.x, model_->kappa);
+  const double g = model_->gate ? model_->gate->weight(features) : 1.0;
+  const double inflation = phi_.dot(model_->inflation);
+
+  corrected.x += g * limited.d;
+  // Written as a change of P_reference: nothing to correct leaves the covariance as it is, to the bit.
+  corrected.P += g * (inflation * source.P - reference.P) + g * (1.0 - g) * (limited.d * limited.d.transpose());
+  outcome.gate = g;
+  outcome.limited = limited.limited;
+  outcome.distance_sigmas = g * limited.distance_sigmas;
+}
+
+}  // namespace truebearing

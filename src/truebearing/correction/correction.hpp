@@ -1,0 +1,57 @@
+// Correction: a function of the records of an ensemble,
+//
+//     x_corrected = x_reference + g limit_kappa(x_base + network(features) - x_reference)
+//     P_corrected = g P_c + (1 - g) P_reference + g (1 - g) d d',   P_c = (sum_j phi_j inflation_j) P_source,
+//
+// with d the limited difference of the two means and g the weight of the box gate. It is open loop: nothing is written back into any tracker.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "truebearing/correction/correction_model.hpp"
+#include "truebearing/correction/feature_extractor.hpp"
+#include "truebearing/tracker/ensemble.hpp"
+
+namespace truebearing {
+
+class Correction {
+ public:
+  /// Binds the model to the members of an ensemble by their names. Throws InputError where a member is missing, has
+  /// another state space or lacks what a feature reads.
+  Correction(std::shared_ptr<const CorrectionModel> model, const Ensemble& ensemble);
+
+  /// One corrected record per track of the reference, from the ensemble's last step. Call it once per step. Valid until
+  /// the next call. Allocates only when a track appears.
+  std::span<const StepRecord> correct(const Ensemble& ensemble);
+  void reset();
+
+  const CorrectionModel& model() const { return *model_; }
+
+ private:
+  struct Track {
+    int id;
+    bool seen;
+    FeatureExtractor extractor;
+  };
+
+  FeatureExtractor& extractor_of(int track);
+  void correct_record(const StepRecord& base, const StepRecord& reference, const StepRecord& source,
+                      const FuzzyNetwork::Inputs& features, StepRecord& corrected);
+
+  std::shared_ptr<const CorrectionModel> model_;
+  int base_;
+  int reference_;
+  int source_;
+  std::vector<int> companions_;
+
+  FeatureExtractor prototype_;
+  std::vector<Track> tracks_;
+  std::vector<const StepRecord*> companion_records_;
+  std::vector<StepRecord> records_;
+  // Work space of one step.
+  FuzzyNetwork::Inputs features_;
+  FuzzyNetwork::Strengths phi_;
+};
+
+}  // namespace truebearing

@@ -1,0 +1,43 @@
+#include "truebearing/correction/correction_model.hpp"
+
+#include <fmt/format.h>
+
+#include "truebearing/core/error.hpp"
+
+namespace truebearing {
+namespace {
+
+void require(bool valid, const char* where, const std::string& found, const std::string& wanted) {
+  if (!valid) throw InputError(where, found, wanted);
+}
+
+}  // namespace
+
+void CorrectionModel::validate() const {
+  const auto d = static_cast<Eigen::Index>(features.size());
+  const Eigen::Index M = network.rules();
+  const Eigen::Index n = space ? space->size() : 0;
+  require(n > 0, "state", "has no components", "a state space");
+  require(network.inputs() == d, "features", fmt::format("{} of them for a network with {} inputs", d, network.inputs()),
+          "one feature per input");
+  require(network.outputs() == n, "rules", fmt::format("consequents of {} numbers", network.outputs()),
+          fmt::format("{}, one per component of the state", n));
+  require(!base.empty() && !reference.empty() && !covariance_of.empty(), "trackers", "a name is empty",
+          "names of base, reference and covariance_of");
+  require(kappa > 0.0, "kappa", fmt::format("is {}", kappa), "a number > 0, or null for none");
+  require(inflation.size() == M && inflation.allFinite() && (inflation.array() > 0.0).all(), "inflation",
+          fmt::format("holds {} numbers, or one that is not > 0", inflation.size()), fmt::format("{} numbers > 0", M));
+  require(usage.size() == M && usage.allFinite(), "usage", fmt::format("holds {} numbers", usage.size()),
+          fmt::format("{} finite numbers", M));
+  require(local_mean.rows() == M && local_mean.cols() == n && local_mean.allFinite(), "local_mean",
+          fmt::format("is {} x {}", local_mean.rows(), local_mean.cols()), fmt::format("{} x {} finite numbers", M, n));
+  if (gate) {
+    require(gate->low.size() == d && gate->high.size() == d && gate->low.allFinite() && gate->high.allFinite() &&
+                (gate->low.array() <= gate->high.array()).all(),
+            "gate", "low and high do not make a box", fmt::format("{} finite numbers each, low <= high", d));
+    require(gate->edge_fraction > 0.0 && gate->edge_fraction <= 10.0, "gate.edge_fraction",
+            fmt::format("is {}", gate->edge_fraction), "a number in (0, 10]");
+  }
+}
+
+}  // namespace truebearing

@@ -1,0 +1,56 @@
+// FeatureExtractor: from the records of a base tracker and its companions to the inputs of a network. Training and tracking
+// share this one class, so that both see the same numbers.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "truebearing/correction/feature.hpp"
+#include "truebearing/correction/fuzzy_network.hpp"
+#include "truebearing/tracker/step_record.hpp"
+
+namespace truebearing {
+
+class FeatureExtractor {
+ public:
+  using Features = FuzzyNetwork::Inputs;
+
+  FeatureExtractor() = default;
+  /// space: of the base's state. Throws InputError where a feature names a component that the space has not, a constant
+  /// is out of range, a block that it reads is not among the base's, or there are more features than a network takes.
+  FeatureExtractor(std::vector<FeatureSpec> features, const StateSpace& space, RecordBlocks base_blocks);
+
+  const std::vector<FeatureSpec>& features() const { return features_; }
+  int size() const { return static_cast<int>(features_.size()); }
+  /// Names of the companions, each once; extract() wants their records in this order.
+  const std::vector<std::string>& companions() const { return companions_; }
+
+  /// The features (d) of this step. Averages advance with every step in which the base used its measurement and hold in
+  /// between; a new track starts them afresh. A companion without a record gives NaN. No allocation.
+  void extract(const StepRecord& base, std::span<const StepRecord* const> companions, Features& features);
+  void reset();
+
+ private:
+  struct Term {
+    FeatureKind kind;
+    int component;
+    int companion;
+    double alpha, offset, scale;
+    double memory;  // the average, or the last value of what only a used measurement gives
+  };
+
+  void begin_track(int track);
+  static double value(Term& term, const StepRecord& base, std::span<const StepRecord* const> companions, double steps,
+                      double mean_nis);
+
+  std::vector<FeatureSpec> features_;
+  std::vector<std::string> companions_;
+  std::vector<Term> terms_;
+  int track_ = -1;
+  double steps_ = 0.0;
+  double used_ = 0.0;     // steps in which the measurement was used
+  double nis_sum_ = 0.0;
+};
+
+}  // namespace truebearing

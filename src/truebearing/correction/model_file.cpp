@@ -1,0 +1,240 @@
+#include "truebearing/correction/model_file.hpp"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "truebearing/core/error.hpp"
+#include "truebearing/core/suggestion.hpp"
+#include "truebearing/io/json_file.hpp"
+
+namespace truebearing {
+namespace {
+
+using Json = nlohmann::json;
+using OrderedJson = nlohmann::ordered_json;
+
+constexpr const char* kFormat = "truebearing-correction";
+constexpr int kVersion = 1;
+
+// One object of the file, read key by key; finish() refuses every key that nobody asked for.
+class ObjectReader {
+ public:
+  ObjectReader(const Json& object, std::string file, std::string path) : object_(&object), file_(std::move(file)), path_(std::move(path)) {
+    if (!object.is_object()) throw InputError(file_ + (path_.empty() ? "" : ": " + path_), "is no object", "{ ... }");
+  }
+
+  const Json& at(const std::string& key) {
+    asked_.push_back(key);
+    const auto found = object_->find(key);
+    if (found == object_->end()) throw error(key, "is missing");
+    return *found;
+  }
+
+  bool has(const std::string& key) const { return object_->contains(key); }
+
+  std::string text(const std::string& key) {
+    const Json& value = at(key);
+    if (!value.is_string()) throw error(key, "is no text", "text in quotes");
+    return value.get<std::string>();
+  }
+
+  double number(const std::string& key) { return finite(at(key), key); }
+
+  Eigen::VectorXd vector(const std::string& key, Eigen::Index size) {
+    const Json& value = at(key);
+    if (!value.is_array() || value.size() != static_cast<std::size_t>(size))
+      throw error(key, value.is_array() ? fmt::format("holds {} values", value.size()) : "is no array",
+                  fmt::format("an array of {} numbers", size));
+    Eigen::VectorXd numbers(size);
+    for (Eigen::Index i = 0; i < size; ++i) numbers[i] = finite(value[static_cast<std::size_t>(i)], key);
+    return numbers;
+  }
+
+  const Json& array(const std::string& key, std::size_t low, std::size_t high) {
+    const Json& value = at(key);
+    if (!value.is_array() || value.size() < low || value.size() > high)
+      throw error(key, value.is_array() ? fmt::format("holds {} values", value.size()) : "is no array",
+                  fmt::format("an array of {} to {}", low, high));
+    return value;
+  }
+
+  ObjectReader object(const std::string& key) { return {at(key), file_, path_.empty() ? key : path_ + "." + key}; }
+
+  void finish() const {
+    for (const auto& [key, value] : object_->items())
+      if (std::find(asked_.begin(), asked_.end(), key) == asked_.end())
+        throw error(key, "is not a known key", suggestion(key, asked_));
+  }
+
+  InputError error(const std::string& key, const std::string& found, const std::string& valid = {}) const {
+    return {file_ + ": " + (path_.empty() ? key : path_ + "." + key), found, valid};
+  }
+
+ private:
+  double finite(const Json& value, const std::string& key) const {
+    if (!value.is_number() || !std::isfinite(value.get<double>())) throw error(key, "holds " + value.dump().substr(0, 40), "finite numbers");
+    return value.get<double>();
+  }
+
+  const Json* object_;
+  std::string file_;
+  std::string path_;
+  std::vector<std::string> asked_;
+};
+
+FeatureSpec read_feature(ObjectReader object) {
+  FeatureSpec feature;
+  const std::string kind = object.text("kind");
+  try {
+    feature.kind = feature_kind(kind);
+  } catch (const InputError& error) {
+    throw object.error("kind", error.found(), error.valid());
+  }
+  const FeatureNeeds needs = needs_of(feature.kind);
+  if (needs.component) feature.component = object.text("component");
+  if (needs.companion) feature.companion = object.text("companion");
+  if (needs.alpha) feature.alpha = object.number("alpha");
+  if (needs.offset) feature.offset = object.number("offset");
+  if (needs.scale) feature.scale = object.number("scale");
+  object.finish();
+  return feature;
+}
+
+OrderedJson feature_json(const FeatureSpec& feature) {
+  const FeatureNeeds needs = needs_of(feature.kind);
+  OrderedJson json{{"kind", std::string(to_string(feature.kind))}};
+  if (needs.component) json["component"] = feature.component;
+  if (needs.companion) json["companion"] = feature.companion;
+  if (needs.alpha) json["alpha"] = feature.alpha;
+  if (needs.offset) json["offset"] = feature.offset;
+  if (needs.scale) json["scale"] = feature.scale;
+  return json;
+}
+
+template <typename Derived>
+OrderedJson array_json(const Eigen::MatrixBase<Derived>& values) {
+  OrderedJson array = OrderedJson::array();
+  for (Eigen::Index i = 0; i < values.size(); ++i) array.push_back(values.derived().coeff(i));
+  return array;
+}
+
+std::vector<std::string> read_texts(ObjectReader& object, const std::string& key, std::size_t high) {
+  std::vector<std::string> texts;
+  for (const Json& value : object.array(key, 1, high)) {
+    if (!value.is_string()) throw object.error(key, "holds " + value.dump().substr(0, 40), "texts");
+    texts.push_back(value.get<std::string>());
+  }
+  return texts;
+}
+
+CorrectionModel model_from(const Json& json, const std::string& name) {
+  ObjectReader file(json, name, "");
+  if (file.text("format") != kFormat) throw file.error("format", "is not " + std::string(kFormat), kFormat);
+  if (const double version = file.number("version"); version != kVersion)
+    throw file.error("version", fmt::format("is {}", version), fmt::format("{}, which this program reads", kVersion));
+
+  CorrectionModel model;
+  model.space = &state_space_of_components(read_texts(file, "state", kMaxDimension));
+  model.base = file.text("base");
+  model.reference = file.text("reference");
+  model.covariance_of = file.text("covariance_of");
+  const Json& kappa = file.at("kappa");
+  if (!kappa.is_null()) model.kappa = file.number("kappa");
+  ObjectReader trackers = file.object("trackers");
+  for (const auto& [key, value] : json["trackers"].items()) model.trackers[key] = trackers.text(key);
+
+  const Json& features = file.array("features", 1, FuzzyNetwork::kMaxInputs);
+  for (std::size_t i = 0; i < features.size(); ++i)
+    model.features.push_back(read_feature(ObjectReader(features[i], name, fmt::format("features[{}]", i))));
+  const auto d = static_cast<Eigen::Index>(features.size());
+  const auto n = static_cast<Eigen::Index>(model.space->size());
+
+  FuzzyNetwork::Parameters parameters;
+  ObjectReader normalisation = file.object("normalisation");
+  parameters.input_mean = normalisation.vector("input_mean", d);
+  parameters.input_scale = normalisation.vector("input_scale", d);
+  parameters.input_clip = normalisation.number("input_clip");
+  parameters.output_scale = normalisation.vector("output_scale", n);
+  normalisation.finish();
+
+  if (!file.at("gate").is_null()) {
+    ObjectReader gate = file.object("gate");
+    model.gate = BoxGate{gate.vector("low", d), gate.vector("high", d), gate.number("edge_fraction")};
+    gate.finish();
+  }
+
+  const Json& rules = file.array("rules", 1, FuzzyNetwork::kMaxRules);
+  const auto M = static_cast<Eigen::Index>(rules.size());
+  parameters.centres.resize(M, d);
+  parameters.widths.resize(M, d);
+  parameters.consequents.resize(M, n);
+  model.inflation.resize(M);
+  model.usage.resize(M);
+  model.local_mean.resize(M, n);
+  for (Eigen::Index j = 0; j < M; ++j) {
+    ObjectReader rule(rules[static_cast<std::size_t>(j)], name, fmt::format("rules[{}]", j));
+    parameters.centres.row(j) = rule.vector("centre", d).transpose();
+    parameters.widths.row(j) = rule.vector("width", d).transpose();
+    parameters.consequents.row(j) = rule.vector("consequent", n).transpose();
+    model.inflation[j] = rule.number("inflation");
+    model.usage[j] = rule.number("usage");
+    model.local_mean.row(j) = rule.vector("local_mean", n).transpose();
+    rule.finish();
+  }
+
+  ObjectReader provenance = file.object("provenance");
+  for (const auto& [key, value] : json["provenance"].items()) model.provenance[key] = provenance.text(key);
+  file.finish();
+  try {
+    model.network = FuzzyNetwork(std::move(parameters));
+    model.validate();
+  } catch (const InputError& error) {
+    throw InputError(name + ": " + error.where(), error.found(), error.valid());
+  }
+  return model;
+}
+
+}  // namespace
+
+CorrectionModel read_model_file(const std::filesystem::path& path) { return model_from(read_json_file(path), path.string()); }
+
+CorrectionModel parse_model(std::string_view text, const std::string& name) { return model_from(parse_json(text, name), name); }
+
+std::string model_text(const CorrectionModel& model) {
+  const FuzzyNetwork::Parameters& parameters = model.network.parameters();
+  OrderedJson json;
+  json["format"] = kFormat;
+  json["version"] = kVersion;
+  json["state"] = model.space->components;
+  json["base"] = model.base;
+  json["reference"] = model.reference;
+  json["covariance_of"] = model.covariance_of;
+  json["kappa"] = std::isfinite(model.kappa) ? OrderedJson(model.kappa) : OrderedJson(nullptr);
+  json["trackers"] = OrderedJson::object();
+  for (const auto& [name, configuration] : model.trackers) json["trackers"][name] = configuration;
+  json["features"] = OrderedJson::array();
+  for (const FeatureSpec& feature : model.features) json["features"].push_back(feature_json(feature));
+  json["normalisation"] = {{"input_mean", array_json(parameters.input_mean)},
+                           {"input_scale", array_json(parameters.input_scale)},
+                           {"input_clip", parameters.input_clip},
+                           {"output_scale", array_json(parameters.output_scale)}};
+  json["gate"] = nullptr;
+  if (model.gate)
+    json["gate"] = {{"low", array_json(model.gate->low)},
+                    {"high", array_json(model.gate->high)},
+                    {"edge_fraction", model.gate->edge_fraction}};
+  json["rules"] = OrderedJson::array();
+  for (Eigen::Index j = 0; j < parameters.centres.rows(); ++j)
+    json["rules"].push_back({{"centre", array_json(parameters.centres.row(j))},
+                             {"width", array_json(parameters.widths.row(j))},
+                             {"consequent", array_json(parameters.consequents.row(j))},
+                             {"inflation", model.inflation[j]},
+                             {"usage", model.usage[j]},
+                             {"local_mean", array_json(model.local_mean.row(j))}});
+  json["provenance"] = OrderedJson::object();
+  for (const auto& [key, value] : model.provenance) json["provenance"][key] = value;
+  return json_text(json);
+}
+
+}  // namespace truebearing

@@ -1,0 +1,19 @@
+// The model file: a CorrectionModel as JSON, readable and editable by hand. Size, nesting, version, shapes and numbers are checked
+// before anything is built from it. save -> load -> save is byte-identical.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "truebearing/correction/correction_model.hpp"
+
+namespace truebearing {
+
+/// At most 1 MiB and 64 levels. Throws InputError that names file and key.
+CorrectionModel read_model_file(const std::filesystem::path& path);
+CorrectionModel parse_model(std::string_view text, const std::string& name);
+
+/// The text of the file.
+std::string model_text(const CorrectionModel& model);
+
+}  // namespace truebearing

@@ -1,0 +1,60 @@
+#include "truebearing/correction/rule_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <numeric>
+#include <vector>
+
+namespace truebearing {
+namespace {
+
+std::string unit_of(const std::string& component) {
+  const std::string unit = component.substr(component.rfind('_') + 1);
+  return unit == "mps" ? "m/s" : unit;
+}
+
+std::string amounts(const StateSpace& space, const Eigen::VectorXd& values) {
+  std::string text;
+  for (int i = 0; i < space.size(); ++i)
+    text += fmt::format("{}{:+.3g} {}", i == 0 ? "" : ", ", values[i], unit_of(space.components[static_cast<std::size_t>(i)]));
+  return text;
+}
+
+}  // namespace
+
+std::string term_word(double u, int parity) {
+  if (parity < 0) {
+    const double size = std::abs(u);
+    if (size < 0.25) return "NEAR ZERO";
+    const std::string sign = u > 0.0 ? "POSITIVE" : "NEGATIVE";
+    return size < 0.75 ? "SMALL " + sign : size < 1.75 ? sign : "LARGE " + sign;
+  }
+  return u < -1.5 ? "VERY SMALL" : u < -0.5 ? "SMALL" : u <= 0.5 ? "MEDIUM" : u <= 1.5 ? "LARGE" : "VERY LARGE";
+}
+
+std::string rule_sentences(const CorrectionModel& model) {
+  const FuzzyNetwork::Parameters& parameters = model.network.parameters();
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(model.network.rules()));
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  std::stable_sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) { return model.usage[a] > model.usage[b]; });
+
+  std::string text;
+  int number = 0;
+  FuzzyNetwork::Strengths phi;
+  for (const Eigen::Index rule : order) {
+    std::string conditions;
+    for (std::size_t i = 0; i < model.features.size(); ++i)
+      conditions += fmt::format("{}{} is {}", i == 0 ? "" : " AND ", describe(model.features[i]),
+                                term_word(parameters.centres(rule, static_cast<Eigen::Index>(i)), mirror_parity(model.features[i].kind)));
+    const FuzzyNetwork::Inputs centre =
+        (parameters.input_mean.array() + parameters.centres.row(rule).transpose().array() * parameters.input_scale.array()).matrix();
+    model.network.strengths(centre, phi);
+    text += fmt::format("{}. IF {} THEN add {}   (usage {:.1f} %, teacher's mean {})\n", ++number, conditions,
+                        amounts(*model.space, model.network.output(phi)), 100.0 * model.usage[rule],
+                        amounts(*model.space, model.local_mean.row(rule).transpose()));
+  }
+  return text;
+}
+
+}  // namespace truebearing

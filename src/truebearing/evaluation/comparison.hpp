@@ -1,0 +1,48 @@
+// A comparison: trackers on the same Monte Carlo runs of one scenario, scored against the truth.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "truebearing/evaluation/monte_carlo.hpp"
+#include "truebearing/evaluation/summary.hpp"
+#include "truebearing/simulation/scenario.hpp"
+
+namespace truebearing {
+
+struct ComparisonOptions {
+  std::uint64_t seed = 1;
+  Role role = Role::evaluation;
+  std::size_t runs = 1000;
+  int threads = 0;  ///< 0: one per core
+  ScoringRule scoring;
+  std::vector<std::pair<std::string, std::string>> pairs;  ///< "a - b" for each
+  std::vector<std::string> bounds;  ///< trackers that are bounds: reported as such too
+  Progress progress;
+};
+
+struct Comparison {
+  std::string study;
+  std::uint64_t seed = 0;
+  std::size_t runs = 0;
+  std::vector<double> time_s;  ///< of the steps, in the first run
+  std::vector<TrackerSummary> trackers;
+  struct Pair {
+    std::string a, b;
+    std::vector<PairedDifference> differences;
+  };
+  std::vector<Pair> pairs;
+  std::vector<std::string> bounds;
+  std::vector<std::pair<std::string, double>> ns_per_step;  ///< by tracker; timings, the only figures that vary
+
+  const TrackerSummary* tracker(const std::string& name) const;
+};
+
+/// Runs the trackers on `runs` evaluation runs of the scenario. The same for any number of threads.
+Comparison compare(const TrackerSet& trackers, const Scenario& scenario, const ComparisonOptions& options);
+
+/// Median time of a step of one tracker over `recording`, in nanoseconds.
+double time_per_step_ns(Tracker& tracker, const Recording& recording);
+
+}  // namespace truebearing

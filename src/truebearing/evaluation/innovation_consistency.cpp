@@ -1,0 +1,53 @@
+#include "truebearing/evaluation/innovation_consistency.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "truebearing/core/chi_square.hpp"
+
+namespace truebearing {
+
+void InnovationConsistency::add(const StepRecord& record) {
+  if (!record.innovation || record.status != StepStatus::ok) return;
+  const Innovation& innovation = *record.innovation;
+  const double freedom = static_cast<double>(innovation.nu.size());
+  if (steps_ < kFirstSteps) {
+    first_freedom_ += freedom;
+    first_nis_sum_ += innovation.nis;
+  }
+  ++steps_;
+  freedom_ += freedom;
+  nis_sum_ += innovation.nis;
+  const double e = innovation.nu[0] / std::sqrt(innovation.S(0, 0));
+  if (steps_ > 1) product_sum_ += e * last_e_;
+  square_sum_ += e * e;
+  last_e_ = e;
+}
+
+double InnovationConsistency::nis_ratio() const {
+  return steps_ > 0 ? nis_sum_ / freedom_ : std::numeric_limits<double>::quiet_NaN();
+}
+
+double InnovationConsistency::nis_ratio_low() const {
+  return steps_ > 0 ? chi_square_quantile(0.025, freedom_) / freedom_ : std::numeric_limits<double>::quiet_NaN();
+}
+
+double InnovationConsistency::nis_ratio_high() const {
+  return steps_ > 0 ? chi_square_quantile(0.975, freedom_) / freedom_ : std::numeric_limits<double>::quiet_NaN();
+}
+
+double InnovationConsistency::correlation() const {
+  return square_sum_ > 0.0 ? product_sum_ / square_sum_ : std::numeric_limits<double>::quiet_NaN();
+}
+
+double InnovationConsistency::correlation_limit() const {
+  return steps_ > 1 ? normal_quantile(0.975) / std::sqrt(static_cast<double>(steps_))
+                    : std::numeric_limits<double>::quiet_NaN();
+}
+
+bool InnovationConsistency::is_implausible_at_start() const {
+  // A badly chosen prior gives tens; metres taken for kilometres, or degrees for radians, give thousands.
+  return first_freedom_ > 0.0 && first_nis_sum_ > 100.0 * chi_square_quantile(0.975, first_freedom_);
+}
+
+}  // namespace truebearing

@@ -1,0 +1,39 @@
+// What can be said of a tracker without truth: whether its innovations are as large as it claims, and white. (Bar-Shalom, Li and
+// Kirubarajan 2001, sec. 5.4.2.)
+#pragma once
+
+#include "truebearing/tracker/step_record.hpp"
+
+namespace truebearing {
+
+class InnovationConsistency {
+ public:
+  void add(const StepRecord& record);
+
+  int steps() const { return steps_; }
+  /// Mean NIS over its degrees of freedom: 1 for a consistent tracker.
+  double nis_ratio() const;
+  /// The interval that holds the mean NIS ratio of a consistent tracker with 95 %.
+  double nis_ratio_low() const;
+  double nis_ratio_high() const;
+  /// Correlation of successive normalised innovations (first component); within +-correlation_limit() with 95 % where
+  /// they are white.
+  double correlation() const;
+  double correlation_limit() const;
+  /// True where the NIS of the first steps is so large that a wrong unit or a wrong column is likelier than chance.
+  bool is_implausible_at_start() const;
+
+ private:
+  static constexpr int kFirstSteps = 10;
+
+  int steps_ = 0;
+  double freedom_ = 0.0;
+  double nis_sum_ = 0.0;
+  double first_freedom_ = 0.0;
+  double first_nis_sum_ = 0.0;
+  double last_e_ = 0.0;
+  double product_sum_ = 0.0;
+  double square_sum_ = 0.0;
+};
+
+}  // namespace truebearing

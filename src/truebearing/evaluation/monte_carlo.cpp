@@ -1,0 +1,43 @@
+#include "truebearing/evaluation/monte_carlo.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#include <thread>
+
+namespace truebearing {
+
+std::size_t worker_count(int threads) {
+  return threads > 0 ? static_cast<std::size_t>(threads) : std::max(1u, std::thread::hardware_concurrency());
+}
+
+void monte_carlo(std::size_t runs, int threads, const std::function<void(std::size_t run, std::size_t worker)>& body,
+                 const Progress& progress) {
+  std::atomic<std::size_t> next{0};
+  std::size_t done = 0;
+  std::mutex progress_mutex;
+  const std::size_t workers = std::min(worker_count(threads), std::max<std::size_t>(runs, 1));
+  tbb::task_arena arena(static_cast<int>(workers));
+  arena.execute([&] {
+    tbb::parallel_for(
+        std::size_t{0}, workers,
+        [&](std::size_t worker) {
+          for (std::size_t run = next++; run < runs; run = next++) {
+            try {
+              body(run, worker);
+            } catch (...) {
+              next = runs;
+              throw;
+            }
+            if (!progress) continue;
+            const std::lock_guard lock(progress_mutex);
+            progress(++done, runs);
+          }
+        },
+        tbb::simple_partitioner());
+  });
+}
+
+}  // namespace truebearing

@@ -1,0 +1,16 @@
+// A comparison, to read: as a table for people and as JSON for programs.
+#pragma once
+
+#include <string>
+
+#include "truebearing/evaluation/comparison.hpp"
+
+namespace truebearing {
+
+/// The table that the command line prints.
+std::string comparison_table(const Comparison& comparison);
+
+/// The results as JSON, indented, with a newline at the end. Byte for byte the same for the same comparison, timings aside.
+std::string comparison_json(const Comparison& comparison);
+
+}  // namespace truebearing

@@ -1,0 +1,161 @@
+#include "truebearing/evaluation/summary.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "truebearing/core/chi_square.hpp"
+
+namespace truebearing {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+struct SquaredErrors {
+  double sum = 0.0;
+  double count = 0.0;
+};
+
+SquaredErrors squared_errors(const std::vector<double>& errors) {
+  SquaredErrors total;
+  for (const double error : errors)
+    if (!std::isnan(error)) {
+      total.sum += error * error;
+      total.count += 1.0;
+    }
+  return total;
+}
+
+double root_mean(const SquaredErrors& errors) { return errors.count > 0.0 ? std::sqrt(errors.sum / errors.count) : kNaN; }
+
+// Standard error of the pooled RMSE: the jackknife, one run left out at a time (Efron and Stein 1981).
+double jackknife_se(const std::vector<SquaredErrors>& runs, const SquaredErrors& total) {
+  std::vector<double> left_out;
+  for (const SquaredErrors& run : runs)
+    if (run.count > 0.0 && run.count < total.count)
+      left_out.push_back(root_mean({std::max(total.sum - run.sum, 0.0), total.count - run.count}));
+  const double n = static_cast<double>(left_out.size());
+  if (n < 2.0) return kNaN;
+  double mean = 0.0;
+  for (const double value : left_out) mean += value / n;
+  double squares = 0.0;
+  for (const double value : left_out) squares += (value - mean) * (value - mean);
+  return std::sqrt((n - 1.0) / n * squares);
+}
+
+double median_of(std::vector<double> values) {
+  if (values.empty()) return kNaN;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  if (values.size() % 2 == 1) return *middle;
+  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
+}
+
+QuantitySummary summarise_quantity(const std::string& name, std::size_t q, const std::vector<const RunScore*>& scores) {
+  QuantitySummary summary;
+  summary.name = name;
+  std::vector<SquaredErrors> runs;
+  SquaredErrors total;
+  std::vector<double> all;
+  std::vector<SquaredErrors> steps;
+  for (const RunScore* score : scores) {
+    const std::vector<double>& errors = score->error[q];
+    runs.push_back(squared_errors(errors));
+    total.sum += runs.back().sum;
+    total.count += runs.back().count;
+    steps.resize(std::max(steps.size(), errors.size()));
+    for (std::size_t step = 0; step < errors.size(); ++step) {
+      if (std::isnan(errors[step])) continue;
+      all.push_back(errors[step]);
+      steps[step].sum += errors[step] * errors[step];
+      steps[step].count += 1.0;
+    }
+  }
+  summary.rmse = root_mean(total);
+  summary.rmse_se = jackknife_se(runs, total);
+  summary.median = median_of(std::move(all));
+  for (const SquaredErrors& step : steps) summary.series.push_back(root_mean(step));
+  return summary;
+}
+
+bool is_lost(const RunScore& score, const Scorer& scorer, const ScoringRule& rule) {
+  for (const auto& [name, threshold] : rule.loss_thresholds)
+    for (std::size_t q = 0; q < scorer.quantities().size(); ++q) {
+      if (scorer.quantities()[q] != name) continue;
+      const auto& errors = score.error[q];
+      const auto last = std::find_if(errors.rbegin(), errors.rend(), [](double e) { return !std::isnan(e); });
+      if (last == errors.rend() || *last > threshold) return true;
+    }
+  return false;
+}
+
+}  // namespace
+
+const QuantitySummary* TrackerSummary::quantity(const std::string& quantity_name) const {
+  for (const QuantitySummary& summary : quantities)
+    if (summary.name == quantity_name) return &summary;
+  return nullptr;
+}
+
+TrackerSummary summarise(const std::string& name, const Scorer& scorer, const std::vector<const RunScore*>& scores,
+                         const ScoringRule& rule) {
+  TrackerSummary summary;
+  summary.name = name;
+  summary.dimension = scorer.dimension();
+  for (std::size_t q = 0; q < scorer.quantities().size(); ++q)
+    summary.quantities.push_back(summarise_quantity(scorer.quantities()[q], q, scores));
+
+  const double quantile = chi_square_quantile(0.95, scorer.dimension());
+  double nees_sum = 0.0, covered = 0.0, count = 0.0, gate_sum = 0.0, limited = 0.0, lost = 0.0;
+  for (const RunScore* score : scores) {
+    for (const double nees : score->nees) {
+      if (std::isnan(nees)) continue;
+      nees_sum += nees;
+      covered += nees <= quantile ? 1.0 : 0.0;
+      count += 1.0;
+    }
+    if (!score->error.empty())
+      summary.scored_steps += std::count_if(score->error[0].begin(), score->error[0].end(), [](double e) { return !std::isnan(e); });
+    summary.corrected_steps += score->corrected;
+    gate_sum += score->gate_sum;
+    limited += score->gate_limited;
+    lost += is_lost(*score, scorer, rule) ? 1.0 : 0.0;
+  }
+  summary.nees = count > 0.0 ? nees_sum / count : kNaN;
+  summary.coverage95 = count > 0.0 ? covered / count : kNaN;
+  summary.loss_rate = scores.empty() ? kNaN : lost / static_cast<double>(scores.size());
+  if (summary.corrected_steps > 0) {
+    summary.limited_share = limited / static_cast<double>(summary.corrected_steps);
+    summary.mean_gate = gate_sum / static_cast<double>(summary.corrected_steps);
+  }
+  return summary;
+}
+
+std::vector<PairedDifference> paired_difference(const Scorer& scorer_a, const std::vector<const RunScore*>& a,
+                                                const Scorer& scorer_b, const std::vector<const RunScore*>& b) {
+  std::vector<PairedDifference> differences;
+  for (std::size_t qa = 0; qa < scorer_a.quantities().size(); ++qa)
+    for (std::size_t qb = 0; qb < scorer_b.quantities().size(); ++qb) {
+      if (scorer_a.quantities()[qa] != scorer_b.quantities()[qb]) continue;
+      std::vector<double> values;
+      for (std::size_t run = 0; run < a.size(); ++run) {
+        const double value = root_mean(squared_errors(a[run]->error[qa])) - root_mean(squared_errors(b[run]->error[qb]));
+        if (!std::isnan(value)) values.push_back(value);
+      }
+      const double n = static_cast<double>(values.size());
+      PairedDifference difference{scorer_a.quantities()[qa], kNaN, kNaN};
+      if (n >= 1.0) {
+        difference.mean = 0.0;
+        for (const double value : values) difference.mean += value / n;
+      }
+      if (n >= 2.0) {
+        double squares = 0.0;
+        for (const double value : values) squares += (value - difference.mean) * (value - difference.mean);
+        difference.se = std::sqrt(squares / (n - 1.0) / n);
+      }
+      differences.push_back(difference);
+    }
+  return differences;
+}
+
+}  // namespace truebearing

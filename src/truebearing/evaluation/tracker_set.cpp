@@ -1,0 +1,46 @@
+#include "truebearing/evaluation/tracker_set.hpp"
+
+#include <utility>
+
+#include "truebearing/core/error.hpp"
+
+namespace truebearing {
+
+void TrackerSet::show_member(const std::string& name) {
+  const int member = ensemble_.index(name);
+  if (member < 0) throw InputError("trackers", "there is no tracker \"" + name + "\"");
+  entries_.push_back({name, member, -1, {}});
+}
+
+void TrackerSet::show_correction(std::string name, std::shared_ptr<const CorrectionModel> model) {
+  const int base = ensemble_.index(model->base);
+  corrections_.emplace_back(std::move(model), ensemble_);
+  entries_.push_back({std::move(name), base, static_cast<int>(corrections_.size()) - 1, {}});
+}
+
+const StateSpace& TrackerSet::space(int entry) const { return ensemble_.tracker(at(entry).member).space(); }
+
+void TrackerSet::step(const Measurement& measurement) {
+  ensemble_.step(measurement);
+  for (Entry& entry : entries_)
+    entry.records = entry.correction < 0 ? ensemble_.records(entry.member)
+                                         : corrections_[static_cast<std::size_t>(entry.correction)].correct(ensemble_);
+}
+
+TrackerCounts TrackerSet::counts(int entry) const { return ensemble_.tracker(at(entry).member).counts(); }
+
+void TrackerSet::reset() {
+  ensemble_.reset();
+  for (Correction& correction : corrections_) correction.reset();
+  for (Entry& entry : entries_) entry.records = {};
+}
+
+TrackerSet TrackerSet::clone() const {
+  TrackerSet copy(ensemble_.clone());
+  copy.corrections_ = corrections_;
+  copy.entries_ = entries_;
+  copy.reset();
+  return copy;
+}
+
+}  // namespace truebearing

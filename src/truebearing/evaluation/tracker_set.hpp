@@ -1,0 +1,48 @@
+// TrackerSet: the trackers of one comparison. Plain and corrected ones share one ensemble, so that each filter runs once however many
+// corrections look at it.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "truebearing/correction/correction.hpp"
+#include "truebearing/tracker/ensemble.hpp"
+
+namespace truebearing {
+
+class TrackerSet {
+ public:
+  explicit TrackerSet(Ensemble ensemble) : ensemble_(std::move(ensemble)) {}
+
+  /// Shows the ensemble's member of that name, or a correction of members under a name of its own, as the next entry.
+  void show_member(const std::string& name);
+  void show_correction(std::string name, std::shared_ptr<const CorrectionModel> model);
+
+  int size() const { return static_cast<int>(entries_.size()); }
+  const std::string& name(int entry) const { return at(entry).name; }
+  const StateSpace& space(int entry) const;
+
+  void step(const Measurement& measurement);
+  /// The records of the last step. Valid until the next step.
+  std::span<const StepRecord> records(int entry) const { return at(entry).records; }
+  TrackerCounts counts(int entry) const;
+
+  void reset();
+  TrackerSet clone() const;
+
+ private:
+  struct Entry {
+    std::string name;
+    int member;      // of the ensemble; the base's where this is a correction
+    int correction;  // -1 where it is a member itself
+    std::span<const StepRecord> records;
+  };
+  const Entry& at(int entry) const { return entries_[static_cast<std::size_t>(entry)]; }
+
+  Ensemble ensemble_;
+  std::vector<Correction> corrections_;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace truebearing

@@ -1,0 +1,56 @@
+// What a study says of a correction: which trackers it looks at, with which features, and how it is trained. Plain data.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "truebearing/correction/feature.hpp"
+#include "truebearing/io/table_reader.hpp"
+
+namespace truebearing {
+
+/// How a correction network is trained.
+struct TrainingSpec {
+  enum class Method {
+    variable_projection,  ///< scattered rules; the default
+    back_propagation      ///< the paper's own: a grid partition, all parameters by gradient descent
+  };
+  Method method = Method::variable_projection;
+  std::size_t runs = 400;
+  int from_step = 1;          ///< number of the first step taught, counted from 1
+  bool mirror = false;        ///< teach every run and its mirror image
+  int rules = 16;             ///< variable projection
+  int iterations = 150;
+  double learning_rate = 0.05;
+  double ridge = 1e-3;
+  int terms_per_input = 3;    ///< back-propagation
+  int epochs = 300;
+  double momentum = 0.0;
+};
+
+struct GateSpec {
+  double quantile = 0.001;     ///< the box leaves out this share of the training data at either end of each feature
+  double edge_fraction = 0.1;
+};
+
+struct CorrectionSpec {
+  std::string base;
+  std::string reference;
+  std::string covariance_of;
+  double kappa = std::numeric_limits<double>::infinity();
+  std::optional<GateSpec> gate;
+  std::vector<FeatureSpec> features;
+  std::filesystem::path model;
+  TrainingSpec training;
+
+  /// Names of all trackers that it looks at, each once: base, reference, covariance source, companions.
+  std::vector<std::string> members() const;
+};
+
+CorrectionSpec read_correction_spec(TableReader& table);
+
+}  // namespace truebearing

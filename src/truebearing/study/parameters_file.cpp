@@ -1,0 +1,75 @@
+#include "truebearing/study/parameters_file.hpp"
+
+#include <fmt/format.h>
+
+#include "truebearing/core/error.hpp"
+#include "truebearing/io/table_reader.hpp"
+
+namespace truebearing {
+
+ParametersFile read_parameters_file(const std::filesystem::path& path) {
+  const toml::table table = read_toml_file(path);
+  ParametersFile parameters;
+  TableReader reader(table, path.string());
+  for (const std::string& name : reader.keys()) {
+    TableReader tracker = reader.table(name);
+    for (const std::string& key : tracker.keys()) {
+      if (name == "provenance")
+        parameters.provenance.emplace_back(key, tracker.text(key));
+      else
+        parameters.trackers[name][key] = tracker.numbers(key, -1, kPositive);
+    }
+  }
+  return parameters;
+}
+
+std::string parameters_text(const ParametersFile& parameters) {
+  std::string text = "# Baseline parameters, written by `truebearing tune`. Studies name this file under `parameters`.\n";
+  text += "\n[provenance]\n";
+  for (const auto& [key, value] : parameters.provenance) text += fmt::format("{} = \"{}\"\n", key, value);
+  for (const auto& [name, values] : parameters.trackers) {
+    text += fmt::format("\n[{}]\n", name);
+    for (const auto& [path, numbers] : values) {
+      std::string list;
+      for (const double value : numbers) list += fmt::format("{}{:.6g}", list.empty() ? "" : ", ", value);
+      text += numbers.size() == 1 ? fmt::format("\"{}\" = {}\n", path, list) : fmt::format("\"{}\" = [{}]\n", path, list);
+    }
+  }
+  return text;
+}
+
+std::vector<double> numbers_at(const toml::table& table, const std::string& path, const std::string& where) {
+  const auto node = table.at_path(path);
+  std::vector<double> values;
+  if (const auto* array = node.as_array()) {
+    for (const toml::node& element : *array) values.push_back(element.value<double>().value_or(0.0));
+  } else if (const auto value = node.value<double>()) {
+    values.push_back(*value);
+  }
+  if (values.empty()) throw InputError(where, "\"" + path + "\" is no number or array of numbers of the tracker");
+  for (const double value : values)
+    if (!(value > 0.0)) throw InputError(where, fmt::format("\"{}\" holds {}", path, value), "numbers > 0 as a start for tuning");
+  return values;
+}
+
+void put_numbers(toml::table& table, const std::string& path, const std::vector<double>& values) {
+  toml::table* parent = &table;
+  std::size_t begin = 0;
+  for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', begin)) {
+    auto* next = parent->get_as<toml::table>(path.substr(begin, dot - begin));
+    if (!next) next = parent->insert_or_assign(path.substr(begin, dot - begin), toml::table{}).first->second.as_table();
+    parent = next;
+    begin = dot + 1;
+  }
+  const std::string key = path.substr(begin);
+  const toml::node* old = parent->get(key);
+  if (values.size() == 1 && !(old && old->is_array())) {
+    parent->insert_or_assign(key, values.front());
+    return;
+  }
+  toml::array array;
+  for (const double value : values) array.push_back(value);
+  parent->insert_or_assign(key, std::move(array));
+}
+
+}  // namespace truebearing

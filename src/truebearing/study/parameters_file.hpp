@@ -1,0 +1,32 @@
+// The parameters file: baseline parameters that `truebearing tune` fitted, by tracker, as readable TOML that studies name.
+//     [tuned]
+//     "motion.variance" = [3.1, 0.09]
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <toml++/toml.h>
+#include <utility>
+#include <vector>
+
+namespace truebearing {
+
+/// Values of one tracker by the dotted path of their key in its table: "motion.variance".
+using TunedValues = std::map<std::string, std::vector<double>>;
+
+struct ParametersFile {
+  std::map<std::string, TunedValues> trackers;
+  std::vector<std::pair<std::string, std::string>> provenance;
+};
+
+/// Throws InputError with file and key.
+ParametersFile read_parameters_file(const std::filesystem::path& path);
+std::string parameters_text(const ParametersFile& parameters);
+
+/// The numbers at a dotted path of a tracker's table. Throws InputError where there are none, or one that is not > 0.
+std::vector<double> numbers_at(const toml::table& table, const std::string& path, const std::string& where);
+/// Puts numbers there, as an array or as a lone number as it was.
+void put_numbers(toml::table& table, const std::string& path, const std::vector<double>& values);
+
+}  // namespace truebearing

@@ -1,0 +1,96 @@
+// A study: one comparison, from its TOML file. A scenario (fixed, or a family to draw from), the trackers, their corrections
+// and how those are trained, and what is scored. The factory of the house: it makes what the file names.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "truebearing/correction/correction_model.hpp"
+#include "truebearing/evaluation/comparison.hpp"
+#include "truebearing/evaluation/tracker_set.hpp"
+#include "truebearing/simulation/scenario.hpp"
+#include "truebearing/study/correction_spec.hpp"
+#include "truebearing/study/parameters_file.hpp"
+
+namespace truebearing {
+
+struct TrackerSpec {
+  std::string name;
+  std::string kind;
+  toml::table configuration;      ///< its table, over that of the tracker it is `like`
+  std::vector<std::string> tune;  ///< dotted paths of the numbers that `truebearing tune` fits
+  bool shown = true;              ///< false for companions that no table needs
+  std::optional<CorrectionSpec> correction;  ///< where kind is "corrected"
+};
+
+using CorrectionModels = std::map<std::string, std::shared_ptr<const CorrectionModel>>;
+
+class Study {
+ public:
+  /// Reads and checks a study file, and makes every tracker that needs no tuned parameters once. Throws InputError.
+  static Study load(const std::filesystem::path& path);
+
+  const std::string& name() const { return name_; }
+  const std::filesystem::path& path() const { return path_; }
+  const Scenario& scenario() const { return *scenario_; }
+  std::uint64_t seed() const { return seed_; }
+  std::size_t runs() const { return runs_; }
+  std::size_t tuning_runs() const { return tuning_runs_; }
+  const ScoringRule& scoring() const { return scoring_; }
+  const std::vector<std::pair<std::string, std::string>>& pairs() const { return pairs_; }
+  const std::vector<std::string>& bounds() const { return bounds_; }
+  const std::filesystem::path& parameters_path() const { return parameters_path_; }
+
+  const std::vector<TrackerSpec>& trackers() const { return trackers_; }
+  /// Throws InputError that suggests the nearest name.
+  const TrackerSpec& tracker(const std::string& name) const;
+
+  /// The tuned parameters in place of those read from parameters_path().
+  void set_parameters(ParametersFile parameters) { parameters_ = std::move(parameters); }
+  const std::optional<ParametersFile>& parameters() const { return parameters_; }
+
+  /// A tracker's table with its tuned numbers in it. Throws InputError where those are missing.
+  toml::table configuration_of(const std::string& name) const;
+  /// The same on one line with its kind: how a model file remembers a tracker.
+  std::string configuration_line(const std::string& name) const;
+  /// A tracker of the study, ready to step; a corrected one brings its own ensemble and reads its model file.
+  std::unique_ptr<Tracker> make_tracker(const std::string& name) const;
+  /// The trackers of those names (none of them corrected), in that order.
+  Ensemble make_ensemble(const std::vector<std::string>& names) const;
+  /// All shown trackers over one ensemble; models from `models`, else from their files.
+  TrackerSet make_tracker_set(const CorrectionModels& models = {}) const;
+
+  /// The model of a corrected tracker from its file, checked against this study. Throws InputError that names the command that
+  /// makes it where it is missing or was made for other trackers or features.
+  std::shared_ptr<const CorrectionModel> load_model(const std::string& name) const;
+  /// Throws InputError where the model was not trained for what the study says of that tracker.
+  void check_model(const std::string& name, const CorrectionModel& model, const std::string& where) const;
+
+  /// Options of a comparison as the study has them.
+  ComparisonOptions comparison_options() const;
+
+ private:
+  Study() = default;
+  void read(const toml::table& table);
+  void read_trackers(TableReader table);
+  void check_trackers();
+
+  std::filesystem::path path_;
+  std::string name_;
+  std::unique_ptr<Scenario> scenario_;
+  std::uint64_t seed_ = 1;
+  std::size_t runs_ = 1000;
+  std::size_t tuning_runs_ = 300;
+  ScoringRule scoring_;
+  std::vector<std::pair<std::string, std::string>> pairs_;
+  std::vector<std::string> bounds_;
+  std::filesystem::path parameters_path_;
+  std::optional<ParametersFile> parameters_;
+  std::vector<TrackerSpec> trackers_;
+};
+
+}  // namespace truebearing

@@ -1,0 +1,60 @@
+#include "truebearing/study/tracker_registry.hpp"
+
+#include <map>
+#include <mutex>
+#include <utility>
+
+#include "truebearing/core/error.hpp"
+#include "truebearing/core/suggestion.hpp"
+#include "truebearing/study/filter_trackers.hpp"
+
+namespace truebearing {
+namespace {
+
+struct Registry {
+  std::mutex mutex;
+  std::map<std::string, TrackerMaker> makers{
+      {"kalman", make_kalman_tracker},
+      {"kalman_bank", make_kalman_bank},
+      {"raw", make_raw_tracker},
+      {"recorded", make_recorded_tracker},
+  };
+};
+
+Registry& registry() {
+  static Registry the_registry;
+  return the_registry;
+}
+
+}  // namespace
+
+void register_tracker(const std::string& kind, TrackerMaker maker) {
+  const std::lock_guard lock(registry().mutex);
+  if (kind.empty() || kind == "corrected" || !registry().makers.emplace(kind, std::move(maker)).second)
+    throw InputError("register_tracker", "the kind \"" + kind + "\" is taken", "a new name");
+}
+
+std::vector<std::string> tracker_kinds() {
+  const std::lock_guard lock(registry().mutex);
+  std::vector<std::string> kinds;
+  for (const auto& [kind, maker] : registry().makers) kinds.push_back(kind);
+  return kinds;
+}
+
+std::unique_ptr<Tracker> make_tracker(const std::string& kind, TableReader& configuration) {
+  TrackerMaker maker;
+  {
+    const std::lock_guard lock(registry().mutex);
+    if (const auto found = registry().makers.find(kind); found != registry().makers.end()) maker = found->second;
+  }
+  if (!maker) {
+    std::vector<std::string> valid = tracker_kinds();
+    valid.push_back("corrected");
+    throw configuration.error("kind", "is \"" + kind + "\"", suggestion(kind, valid));
+  }
+  std::unique_ptr<Tracker> tracker = maker(configuration);
+  configuration.finish();
+  return tracker;
+}
+
+}  // namespace truebearing

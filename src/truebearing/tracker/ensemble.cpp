@@ -1,0 +1,44 @@
+#include "truebearing/tracker/ensemble.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "truebearing/core/error.hpp"
+
+namespace truebearing {
+
+int Ensemble::add(std::string name, std::unique_ptr<Tracker> tracker) {
+  if (index(name) >= 0) throw InputError("ensemble", "has two members named \"" + name + "\"", "unique names");
+  members_.push_back({std::move(name), std::move(tracker), {}});
+  return size() - 1;
+}
+
+int Ensemble::index(std::string_view name) const {
+  const auto found = std::find_if(members_.begin(), members_.end(), [&](const Member& m) { return m.name == name; });
+  return found == members_.end() ? -1 : static_cast<int>(found - members_.begin());
+}
+
+void Ensemble::step(const Measurement& measurement) {
+  for (Member& member : members_) member.records = member.tracker->step(measurement);
+}
+
+void Ensemble::reset() {
+  for (Member& member : members_) {
+    member.tracker->reset();
+    member.records = {};
+  }
+}
+
+Ensemble Ensemble::clone() const {
+  Ensemble copy;
+  for (const Member& member : members_) copy.add(member.name, member.tracker->clone());
+  return copy;
+}
+
+const StepRecord* Ensemble::record(int member, int track) const {
+  const std::span<const StepRecord> all = records(member);
+  const auto found = std::find_if(all.begin(), all.end(), [&](const StepRecord& r) { return r.track == track; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+}  // namespace truebearing

@@ -1,0 +1,49 @@
+// Ensemble: several trackers stepped on the same measurements, their records aligned by track. Everything that compares or
+// corrects trackers looks at one ensemble, so that no tracker runs twice.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "truebearing/tracker/tracker.hpp"
+
+namespace truebearing {
+
+class Ensemble {
+ public:
+  Ensemble() = default;
+
+  /// Adds a member and returns its index. Names are unique; throws InputError for a second one.
+  int add(std::string name, std::unique_ptr<Tracker> tracker);
+
+  /// Index of the member of that name, -1 where there is none.
+  int index(std::string_view name) const;
+  int size() const { return static_cast<int>(members_.size()); }
+  const std::string& name(int member) const { return at(member).name; }
+  const Tracker& tracker(int member) const { return *at(member).tracker; }
+
+  /// Steps every member on the measurement.
+  void step(const Measurement& measurement);
+  void reset();
+  Ensemble clone() const;
+
+  /// The records of the last step. Valid until the next step.
+  std::span<const StepRecord> records(int member) const { return at(member).records; }
+  /// The member's record for that track, nullptr where it has none.
+  const StepRecord* record(int member, int track) const;
+
+ private:
+  struct Member {
+    std::string name;
+    std::unique_ptr<Tracker> tracker;
+    std::span<const StepRecord> records;
+  };
+  const Member& at(int member) const { return members_[static_cast<std::size_t>(member)]; }
+
+  std::vector<Member> members_;
+};
+
+}  // namespace truebearing

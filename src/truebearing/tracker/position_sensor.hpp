@@ -1,0 +1,23 @@
+// Sensors as the FilterTracker wants them: from one measurement to the measurement model of the step.
+#pragma once
+
+#include "truebearing/measurement/measurement.hpp"
+#include "truebearing/measurement/position.hpp"
+
+namespace truebearing {
+
+/// Measures the position components. The measurement's own standard deviations hold where it carries them, else `sigma_m`;
+/// either is multiplied by `sigma_factor`.
+template <int D>
+struct PositionSensor {
+  using Model = Position<D>;
+  using Sigma = Eigen::Matrix<double, D, 1>;
+  Sigma sigma_m = Sigma::Ones();
+  double sigma_factor = 1.0;
+
+  Model model(const Measurement& measurement) const {
+    return Model{measurement.sigma.size() == D ? Sigma(sigma_factor * measurement.sigma) : Sigma(sigma_factor * sigma_m)};
+  }
+};
+
+}  // namespace truebearing

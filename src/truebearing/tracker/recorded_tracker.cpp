@@ -1,0 +1,28 @@
+#include "truebearing/tracker/recorded_tracker.hpp"
+
+#include <utility>
+
+namespace truebearing {
+namespace {
+
+constexpr double kTimeTolerance_s = 1e-6;
+
+}  // namespace
+
+RecordedTracker::RecordedTracker(StepLog log) : log_(std::make_shared<const StepLog>(std::move(log))) {}
+
+std::span<const StepRecord> RecordedTracker::step(const Measurement& measurement) {
+  const std::vector<StepRecord>& records = log_->records;
+  while (next_ < records.size() && records[next_].time_s < measurement.time_s - kTimeTolerance_s) ++next_;
+  const std::size_t first = next_;
+  while (next_ < records.size() && records[next_].time_s <= measurement.time_s + kTimeTolerance_s) ++next_;
+  return {records.data() + first, next_ - first};
+}
+
+std::unique_ptr<Tracker> RecordedTracker::clone() const {
+  auto copy = std::make_unique<RecordedTracker>(*this);
+  copy->reset();
+  return copy;
+}
+
+}  // namespace truebearing

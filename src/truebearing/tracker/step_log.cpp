@@ -1,0 +1,168 @@
+#include "truebearing/tracker/step_log.hpp"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+
+#include "truebearing/core/covariance.hpp"
+#include "truebearing/core/error.hpp"
+#include "truebearing/io/csv.hpp"
+
+namespace truebearing {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+// Columns name_1, name_2, ... as far as they go.
+std::vector<int> vector_columns(const CsvReader& csv, const std::string& name) {
+  std::vector<int> columns;
+  while (true) {
+    const int column = csv.column(fmt::format("{}_{}", name, columns.size() + 1));
+    if (column < 0) return columns;
+    columns.push_back(column);
+  }
+}
+
+// The upper triangle name_1_1, name_1_2, ..., row by row; empty where it is not all there.
+std::vector<int> triangle_columns(const CsvReader& csv, const std::string& name, std::size_t size) {
+  std::vector<int> columns;
+  for (std::size_t i = 1; i <= size; ++i)
+    for (std::size_t j = i; j <= size; ++j) {
+      const int column = csv.column(fmt::format("{}_{}_{}", name, i, j));
+      if (column < 0) return {};
+      columns.push_back(column);
+    }
+  return columns;
+}
+
+BoundedVector read_vector(const CsvReader& csv, const std::vector<int>& columns) {
+  BoundedVector v(static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    v[static_cast<Eigen::Index>(i)] = csv.number(static_cast<std::size_t>(columns[i]));
+  return v;
+}
+
+BoundedMatrix read_triangle(const CsvReader& csv, const std::vector<int>& columns, Eigen::Index size) {
+  BoundedMatrix A(size, size);
+  std::size_t next = 0;
+  for (Eigen::Index i = 0; i < size; ++i)
+    for (Eigen::Index j = i; j < size; ++j) A(i, j) = A(j, i) = csv.number(static_cast<std::size_t>(columns[next++]));
+  return A;
+}
+
+StepStatus read_status(const CsvReader& csv, int column) {
+  if (column < 0) return StepStatus::ok;
+  const std::string_view text = csv.text(static_cast<std::size_t>(column));
+  for (const StepStatus status : {StepStatus::ok, StepStatus::rejected, StepStatus::coasted, StepStatus::unobservable,
+                                  StepStatus::failed})
+    if (text == to_string(status)) return status;
+  throw csv.error(static_cast<std::size_t>(column), fmt::format("\"{}\" is no status", text),
+                  "ok, rejected, coasted, unobservable, failed");
+}
+
+StepLog read_rows(CsvReader& csv, const std::string& tracker) {
+  const std::size_t time = csv.required_column("time_s");
+  const std::size_t track = csv.required_column("track");
+  const int tracker_column = csv.column("tracker");
+  if (!tracker.empty() && tracker_column < 0)
+    throw InputError(csv.name(), "has no column `tracker` to find \"" + tracker + "\" in");
+  std::vector<std::string> components;
+  std::vector<int> x_columns;
+  for (std::size_t column = 0; column < csv.header().size(); ++column)
+    if (csv.header()[column].starts_with("x_")) {
+      components.push_back(csv.header()[column].substr(2));
+      x_columns.push_back(static_cast<int>(column));
+    }
+  if (components.empty()) throw InputError(csv.name(), "has no column x_<component>", "x_position_m and the like");
+  StepLog log;
+  log.space = &state_space_of_components(components);
+  const std::size_t n = components.size();
+  const std::vector<int> P_columns = triangle_columns(csv, "P", n);
+  if (P_columns.empty()) throw InputError(csv.name(), "lacks columns of P", fmt::format("P_1_1 to P_{0}_{0}, upper triangle", n));
+  const std::vector<int> z_columns = vector_columns(csv, "z");
+  const std::vector<int> nu_columns = vector_columns(csv, "nu");
+  const std::vector<int> S_columns = triangle_columns(csv, "S", nu_columns.size());
+  const int status_column = csv.column("status");
+  log.has_innovation = !nu_columns.empty() && z_columns.size() == nu_columns.size() && !S_columns.empty();
+  if (z_columns.size() > kMaxDimension) throw InputError(csv.name(), fmt::format("has {} columns z", z_columns.size()), fmt::format("at most {}", kMaxDimension));
+
+  double last_time_s = -std::numeric_limits<double>::infinity();
+  while (csv.next()) {
+    if (!tracker.empty() && csv.text(static_cast<std::size_t>(tracker_column)) != tracker) continue;
+    StepRecord record;
+    record.space = log.space;
+    record.time_s = csv.number(time);
+    if (!(record.time_s >= last_time_s))
+      throw csv.error(time, fmt::format("{} after {}", record.time_s, last_time_s), "times that do not decrease");
+    last_time_s = record.time_s;
+    const double track_number = csv.number(track);
+    if (!(track_number >= 0.0 && track_number < 1e9) || track_number != std::floor(track_number))
+      throw csv.error(track, "is no track number", "an integer >= 0");
+    record.track = static_cast<int>(track_number);
+    record.status = read_status(csv, status_column);
+    record.x = read_vector(csv, x_columns);
+    record.P = read_triangle(csv, P_columns, static_cast<Eigen::Index>(n));
+    if (!record.x.allFinite()) throw csv.error(static_cast<std::size_t>(x_columns[0]), "the state is not finite", "numbers");
+    if (!is_covariance(record.P))
+      throw csv.error(static_cast<std::size_t>(P_columns[0]), "P is not symmetric positive semi-definite", "a covariance");
+    if (log.has_innovation) {
+      Innovation innovation{read_vector(csv, z_columns), read_vector(csv, nu_columns),
+                            read_triangle(csv, S_columns, static_cast<Eigen::Index>(nu_columns.size())), 0.0};
+      innovation.nis = mahalanobis_squared(innovation.S, innovation.nu);
+      if (std::isfinite(innovation.nis)) record.innovation = innovation;
+    }
+    log.records.push_back(record);
+  }
+  if (log.records.empty())
+    throw InputError(csv.name(), tracker.empty() ? "has no rows" : "has no rows of the tracker \"" + tracker + "\"");
+  return log;
+}
+
+}  // namespace
+
+StepLog read_step_log(const std::filesystem::path& path, const std::string& tracker) {
+  CsvReader csv(path);
+  return read_rows(csv, tracker);
+}
+
+StepLog read_step_log(std::istream& stream, const std::string& name, const std::string& tracker) {
+  CsvReader csv(stream, name);
+  return read_rows(csv, tracker);
+}
+
+StepLogWriter::StepLogWriter(const StateSpace& space, int measurements)
+    : states_(space.size()), measurements_(measurements), header_{"time_s", "tracker", "track", "status"} {
+  for (const std::string& component : space.components) header_.push_back("x_" + component);
+  const auto add_triangle = [this](const char* name, int size) {
+    for (int i = 1; i <= size; ++i)
+      for (int j = i; j <= size; ++j) header_.push_back(fmt::format("{}_{}_{}", name, i, j));
+  };
+  add_triangle("P", states_);
+  for (int i = 1; i <= measurements_; ++i) header_.push_back(fmt::format("z_{}", i));
+  for (int i = 1; i <= measurements_; ++i) header_.push_back(fmt::format("nu_{}", i));
+  add_triangle("S", measurements_);
+}
+
+void StepLogWriter::add(const std::string& tracker, const StepRecord& record) { rows_.push_back({tracker, record}); }
+
+std::string StepLogWriter::str() const {
+  CsvWriter csv(header_);
+  for (const auto& [tracker, record] : rows_) {
+    csv.number(record.time_s);
+    csv.text(tracker);
+    csv.number(record.track);
+    csv.text(to_string(record.status));
+    for (int i = 0; i < states_; ++i) csv.number(record.x[i]);
+    for (int i = 0; i < states_; ++i)
+      for (int j = i; j < states_; ++j) csv.number(record.P(i, j));
+    const bool has = record.innovation && record.innovation->nu.size() == measurements_;
+    for (int i = 0; i < measurements_; ++i) csv.number(has ? record.innovation->z[i] : kMissing);
+    for (int i = 0; i < measurements_; ++i) csv.number(has ? record.innovation->nu[i] : kMissing);
+    for (int i = 0; i < measurements_; ++i)
+      for (int j = i; j < measurements_; ++j) csv.number(has ? record.innovation->S(i, j) : kMissing);
+    csv.end_row();
+  }
+  return csv.str();
+}
+
+}  // namespace truebearing

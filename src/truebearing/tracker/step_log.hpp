@@ -1,0 +1,46 @@
+// The step log: what trackers did, as CSV. It is what `truebearing track -o` writes, and how a tracker that runs elsewhere (an existing
+// system, MATLAB, Stone Soup) joins the house. Columns: `time_s`, `track`, `x_<component>`, `P_<i>_<j>` (upper triangle, from 1), and
+// where they exist `tracker`, `status`, `z_<i>`, `nu_<i>`, `S_<i>_<j>`, `truth_<component>`.
+#pragma once
+
+#include <filesystem>
+#include <istream>
+#include <string>
+#include <vector>
+
+#include "truebearing/tracker/step_record.hpp"
+
+namespace truebearing {
+
+struct StepLog {
+  const StateSpace* space = nullptr;
+  std::vector<StepRecord> records;  ///< in the order of the file, times not decreasing
+  bool has_innovation = false;
+};
+
+/// The records of `tracker`, or of the whole file where that is empty. An innovation block is read where z, nu and S are all
+/// there. Throws InputError that names file and line: decreasing times, a covariance that is none, missing columns.
+StepLog read_step_log(const std::filesystem::path& path, const std::string& tracker = {});
+StepLog read_step_log(std::istream& stream, const std::string& name, const std::string& tracker = {});
+
+/// Builds a step log. All records must be of one state space; blocks that a record has not become empty cells.
+class StepLogWriter {
+ public:
+  /// measurements: size of z; 0 leaves the innovation's columns out.
+  StepLogWriter(const StateSpace& space, int measurements);
+
+  void add(const std::string& tracker, const StepRecord& record);
+  std::string str() const;
+
+ private:
+  int states_;
+  int measurements_;
+  std::vector<std::string> header_;
+  struct Row {
+    std::string tracker;
+    StepRecord record;
+  };
+  std::vector<Row> rows_;
+};
+
+}  // namespace truebearing

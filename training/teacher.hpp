@@ -1,0 +1,39 @@
+// The teacher: the same simulator, trackers and feature extractor as at run time, with the labels (truth minus estimate) joined
+// afterwards by time.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "truebearing/core/random.hpp"
+#include "truebearing/correction/feature.hpp"
+#include "truebearing/evaluation/monte_carlo.hpp"
+#include "truebearing/simulation/scenario.hpp"
+#include "truebearing/study/correction_spec.hpp"
+#include "truebearing/tracker/ensemble.hpp"
+
+namespace truebearing {
+
+/// One row per taught step of a run, run after run. d features, n state components.
+struct TeacherSet {
+  std::vector<FeatureSpec> features;
+  Eigen::MatrixXd X;  ///< (N x d), features in their units
+  Eigen::MatrixXd Y;  ///< (N x n), truth - base estimate
+  /// Lower Cholesky factors of the covariance that the correction's own is made from, row by row (N x n n).
+  Eigen::MatrixXd covariance_factors;
+};
+
+struct TeacherOptions {
+  std::uint64_t seed = 1;
+  Role role = Role::training;
+  int threads = 0;
+  Progress progress;
+};
+
+/// Runs `ensemble`, which has the members that `correction` names, over correction.training.runs runs of the scenario. Steps without a
+/// record, with unknown truth or with features that are not finite are left out. Throws InputError where no step is left or
+/// the truth is of another space than the base's state.
+TeacherSet collect_teacher_set(const Ensemble& ensemble, const CorrectionSpec& correction, const Scenario& scenario,
+                               const TeacherOptions& options);
+
+}  // namespace truebearing

@@ -1,0 +1,30 @@
+// From a study to a trained correction: teacher set -> network -> gate and covariance -> model.
+#pragma once
+
+#include <string>
+
+#include "training/fuzzy_training.hpp"
+#include "training/teacher.hpp"
+#include "truebearing/correction/correction_model.hpp"
+#include "truebearing/study/study.hpp"
+
+namespace truebearing {
+
+struct TrainOptions {
+  std::uint64_t seed = 1;
+  int threads = 0;                     ///< for the teacher's runs; the network itself is trained on one thread
+  Progress teacher_progress;           ///< runs done
+  TrainingProgress training_progress;  ///< iterations done
+};
+
+struct TrainReport {
+  Eigen::Index rows = 0;
+  double cost = 0.0;           ///< of the network on the teacher set, normalised
+  double training_seconds = 0.0;  ///< of the network alone
+};
+
+/// Trains the corrected tracker of that name. The same for the same study and seed, to the bit.
+CorrectionModel train_correction(const Study& study, const std::string& name, const TrainOptions& options,
+                                 TrainReport* report = nullptr);
+
+}  // namespace truebearing

@@ -1,0 +1,140 @@
+#include "training/tune.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <nlopt.hpp>
+#include <optional>
+
+#include "truebearing/core/error.hpp"
+#include "truebearing/evaluation/run_score.hpp"
+#include "truebearing/evaluation/summary.hpp"
+#include "truebearing/study/tracker_registry.hpp"
+
+namespace truebearing {
+namespace {
+
+// The tuned numbers of a tracker as one vector of logarithms.
+class TunedTracker {
+ public:
+  TunedTracker(const Study& study, const TrackerSpec& spec) : study_(study), spec_(spec) {
+    for (const std::string& path : spec.tune) {
+      sizes_.push_back(numbers_at(spec.configuration, path, spec.name + ".tune").size());
+      for (const double value : numbers_at(spec.configuration, path, spec.name + ".tune")) start_.push_back(std::log(value));
+    }
+  }
+
+  const std::vector<double>& start() const { return start_; }
+
+  TunedValues values(const std::vector<double>& logarithms) const {
+    TunedValues values;
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < sizes_.size(); ++i)
+      for (std::size_t j = 0; j < sizes_[i]; ++j) values[spec_.tune[i]].push_back(std::exp(logarithms[next++]));
+    return values;
+  }
+
+  std::unique_ptr<Tracker> make(const std::vector<double>& logarithms) const {
+    toml::table configuration = spec_.configuration;
+    for (const auto& [path, numbers] : values(logarithms)) put_numbers(configuration, path, numbers);
+    TableReader reader(configuration, study_.path().string(), "trackers." + spec_.name);
+    return make_tracker(spec_.kind, reader);
+  }
+
+ private:
+  const Study& study_;
+  const TrackerSpec& spec_;
+  std::vector<std::size_t> sizes_;
+  std::vector<double> start_;
+};
+
+// Scores a tracker on the same recordings again and again.
+class TuningRuns {
+ public:
+  TuningRuns(const Study& study, const TuneOptions& options) : study_(study), threads_(options.threads), recordings_(study.tuning_runs()) {
+    monte_carlo(recordings_.size(), threads_, [&](std::size_t run, std::size_t) {
+      recordings_[run] = study.scenario().simulate({options.seed, Role::tuning, run});
+    });
+  }
+
+  TrackerSummary score(const Tracker& tracker) const {
+    Ensemble ensemble;
+    ensemble.add("tuned", tracker.clone());
+    TrackerSet prototype(std::move(ensemble));
+    prototype.show_member("tuned");
+    const std::vector<Scorer> scorers{Scorer(study_.scenario().truth_space(), tracker.space())};
+    std::vector<std::vector<RunScore>> scores(recordings_.size());
+    std::vector<std::optional<TrackerSet>> sets(worker_count(threads_));
+    monte_carlo(recordings_.size(), threads_, [&](std::size_t run, std::size_t worker) {
+      if (!sets[worker]) sets[worker].emplace(prototype.clone());
+      scores[run] = score_recording(*sets[worker], scorers, recordings_[run], study_.scoring());
+    });
+    std::vector<const RunScore*> all;
+    for (const std::vector<RunScore>& score : scores) all.push_back(&score.front());
+    return summarise("tuned", scorers.front(), all, study_.scoring());
+  }
+
+ private:
+  const Study& study_;
+  int threads_;
+  std::vector<Recording> recordings_;
+};
+
+double cost_of(const TrackerSummary& summary) {
+  double cost = 0.0;
+  for (const QuantitySummary& quantity : summary.quantities) cost += std::log(quantity.rmse);
+  return std::isfinite(cost) ? cost : std::numeric_limits<double>::max();
+}
+
+// One factor on all numbers that leaves the estimates as they are: choose it by the NEES.
+void fix_common_factor(std::vector<double>& logarithms, const TunedTracker& tracker, const TuningRuns& runs) {
+  const TrackerSummary summary = runs.score(*tracker.make(logarithms));
+  std::vector<double> scaled = logarithms;
+  for (double& logarithm : scaled) logarithm += std::log(summary.nees / summary.dimension);
+  const double change = cost_of(runs.score(*tracker.make(scaled))) - cost_of(summary);
+  if (std::abs(change) < 1e-9) logarithms = scaled;
+}
+
+}  // namespace
+
+TunedValues tune_tracker(const Study& study, const std::string& name, const TuneOptions& options, TuneReport* report) {
+  const TrackerSpec& spec = study.tracker(name);
+  if (spec.tune.empty()) throw InputError(study.path().string() + ": trackers." + name, "has nothing to tune", "a key `tune`");
+  const TunedTracker tracker(study, spec);
+  const TuningRuns runs(study, options);
+
+  int evaluations = 0;
+  double best = std::numeric_limits<double>::max();
+  std::function<double(const std::vector<double>&)> cost = [&](const std::vector<double>& logarithms) {
+    const double value = cost_of(runs.score(*tracker.make(logarithms)));
+    best = std::min(best, value);
+    if (options.progress) options.progress(++evaluations, options.max_evaluations, best);
+    else ++evaluations;
+    return value;
+  };
+  const double before = cost(tracker.start());
+
+  // Two rounds: the second from where the first ended, with a fresh simplex, for those that collapse on the way.
+  std::vector<double> logarithms = tracker.start();
+  double after = before;
+  for (const double step : {1.0, 0.3}) {
+    nlopt::opt optimizer(nlopt::LN_NELDERMEAD, static_cast<unsigned>(logarithms.size()));
+    optimizer.set_min_objective(
+        [](const std::vector<double>& x, std::vector<double>&, void* data) {
+          return (*static_cast<std::function<double(const std::vector<double>&)>*>(data))(x);
+        },
+        &cost);
+    optimizer.set_initial_step(step);
+    optimizer.set_ftol_abs(1e-7);
+    optimizer.set_xtol_abs(1e-3);
+    optimizer.set_maxeval(options.max_evaluations / 2);
+    optimizer.optimize(logarithms, after);
+  }
+  if (logarithms.size() > 1) fix_common_factor(logarithms, tracker, runs);
+  if (report) *report = {evaluations, before, after};
+  return tracker.values(logarithms);
+}
+
+}  // namespace truebearing

@@ -1,4 +1,125 @@
 #include "truebearing/io/file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <utility>
+
+#include "truebearing/core/error.hpp"
+
 namespace truebearing {
-std::string read_text_file(const std::filesystem::path&, std::size_t) { return {}; }
+namespace {
+
+InputError system_error(const std::filesystem::path& path, const char* action, int code) {
+  return {path.string(), fmt::format("cannot be {}: {}", action, std::strerror(code))};
 }
+
+class FileDescriptor {
+ public:
+  explicit FileDescriptor(int descriptor) : descriptor_(descriptor) {}
+  FileDescriptor(const FileDescriptor&) = delete;
+  FileDescriptor& operator=(const FileDescriptor&) = delete;
+  ~FileDescriptor() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  int get() const { return descriptor_; }
+  /// Some file systems report a failed write only here.
+  bool close() { return ::close(std::exchange(descriptor_, -1)) == 0; }
+
+ private:
+  int descriptor_;
+};
+
+/// A file beside the target that is removed unless it was renamed onto it.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const std::filesystem::path& target) : path_(unused_name(target)), file_(create(target)) {}
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile() {
+    if (!renamed_) ::unlink(path_.c_str());
+  }
+
+  bool write(std::string_view text) {
+    while (!text.empty()) {
+      const ssize_t written = ::write(file_.get(), text.data(), text.size());
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) return false;
+      text.remove_prefix(static_cast<std::size_t>(written));
+    }
+    return ::fsync(file_.get()) == 0 && file_.close();
+  }
+
+  bool rename_to(const std::filesystem::path& target) {
+    renamed_ = std::rename(path_.c_str(), target.c_str()) == 0;
+    return renamed_;
+  }
+
+ private:
+  static std::filesystem::path unused_name(const std::filesystem::path& target) {
+    static std::atomic<unsigned> counter{0};
+    return target.parent_path() / fmt::format(".truebearing-{}-{}.tmp", ::getpid(), counter++);
+  }
+
+  int create(const std::filesystem::path& target) {
+    for (;;) {
+      const int descriptor = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      if (descriptor >= 0) return descriptor;
+      // The name may be left over from a killed process that had our number.
+      if (errno != EEXIST) throw system_error(target, "written", errno);
+      path_ = unused_name(target);
+    }
+  }
+
+  std::filesystem::path path_;
+  FileDescriptor file_;
+  bool renamed_ = false;
+};
+
+/// The file that `path` leads to, so that a symbolic link stays one. Devices and directories cannot be replaced.
+std::filesystem::path replaceable_target(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) return path;
+  if (!std::filesystem::is_regular_file(status)) throw InputError(path.string(), "is not a regular file");
+  return std::filesystem::canonical(path);
+}
+
+}  // namespace
+
+std::string read_text_file(const std::filesystem::path& path, std::size_t max_bytes) {
+  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (file.get() < 0) throw system_error(path, "opened", errno);
+  constexpr std::size_t kChunkBytes = std::size_t{1} << 16;
+  std::string text;
+  for (;;) {
+    const std::size_t size = text.size();
+    text.resize(size + kChunkBytes);
+    const ssize_t count = ::read(file.get(), text.data() + size, kChunkBytes);
+    const int code = errno;
+    text.resize(size + (count > 0 ? static_cast<std::size_t>(count) : 0));
+    if (count == 0) return text;
+    if (count < 0 && code != EINTR) throw system_error(path, "read", code);
+    if (text.size() > max_bytes)
+      throw InputError(path.string(), "is too large", fmt::format("at most {} bytes", max_bytes));
+  }
+}
+
+void write_file_atomically(const std::filesystem::path& path, std::string_view text) {
+  const std::filesystem::path target = replaceable_target(path);
+  TemporaryFile temporary(target);
+  if (!temporary.write(text) || !temporary.rename_to(target)) throw system_error(path, "written", errno);
+
+  // The rename is on disk once the folder is. Not every file system can do that, and the file is whole either way.
+  const std::filesystem::path folder = target.has_parent_path() ? target.parent_path() : ".";
+  const FileDescriptor directory(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (directory.get() >= 0) ::fsync(directory.get());
+}
+
+}  // namespace truebearing

@@ -35,6 +35,51 @@ int depth_of(const toml::node& node) {
   return deepest + 1;
 }
 
+/// Index of the last character of the string that begins at `begin`, or of the text where it does not end.
+std::size_t end_of_string(std::string_view text, std::size_t begin) {
+  const char quote = text[begin];
+  const std::string thrice(3, quote);
+  const bool multi_line = text.substr(begin, 3) == thrice;
+  for (std::size_t i = begin + (multi_line ? 3 : 1); i < text.size(); ++i) {
+    if (text[i] == '\\' && quote == '"') {
+      ++i;
+    } else if (multi_line ? text.substr(i, 3) == thrice : text[i] == quote || text[i] == '\n') {
+      return multi_line ? i + 2 : i;
+    }
+  }
+  return text.size();
+}
+
+/// Open brackets, or dots in one key, whichever are more. Counted before parsing, since a parsed table of any depth is
+/// destroyed recursively, and a long enough key of dots would overflow the stack.
+int nesting_of_text(std::string_view text) {
+  int open = 0, dots = 0, deepest = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    switch (text[i]) {
+      case '#': i = std::min(text.find('\n', i), text.size()) - 1; break;
+      case '"':
+      case '\'': i = end_of_string(text, i); break;
+      case '[':
+      case '{':
+        ++open;
+        dots = 0;
+        break;
+      case ']':
+      case '}':
+        --open;
+        dots = 0;
+        break;
+      case '.': ++dots; break;
+      case '=':
+      case ',':
+      case '\n': dots = 0; break;
+      default: break;
+    }
+    deepest = std::max({deepest, open, dots});
+  }
+  return deepest;
+}
+
 std::string describe(Range range) {
   if (range.high >= 1e300) {
     if (range.low <= -1e300) return "a finite number";
@@ -52,10 +97,11 @@ bool contains(Range range, double value) {
 toml::table parse_toml(std::string_view text, const std::string& name) {
   if (text.size() > kMaxTomlBytes)
     throw InputError(name, fmt::format("is {} bytes long", text.size()), fmt::format("at most {} bytes", kMaxTomlBytes));
+  const InputError too_deep(name, "is nested too deeply", fmt::format("at most {} levels", kMaxDepth));
+  if (nesting_of_text(text) > kMaxDepth) throw too_deep;
   try {
     toml::table table = toml::parse(text, name);
-    if (depth_of(table) > kMaxDepth + 1)
-      throw InputError(name, "is nested too deeply", fmt::format("at most {} levels", kMaxDepth));
+    if (depth_of(table) > kMaxDepth + 1) throw too_deep;
     return table;
   } catch (const toml::parse_error& error) {
     throw InputError(fmt::format("{}:{}", name, error.source().begin.line), std::string(error.description()), "TOML");

@@ -1,0 +1,78 @@
+// CSV with a header (RFC 4180): comma, quoted cells, LF or CRLF, an optional UTF-8 byte order mark. Read row by row, so
+// that the size of a file does not matter; numbers are read and written without regard to the locale.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <istream>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "truebearing/core/error.hpp"
+
+namespace truebearing {
+
+class CsvReader {
+ public:
+  /// Opens a file, or standard input where the path is "-", and reads the header. Throws InputError, as all members do.
+  explicit CsvReader(const std::filesystem::path& path);
+  /// The same for a stream that outlives the reader; `name` stands for the file in messages.
+  CsvReader(std::istream& stream, std::string name);
+
+  const std::vector<std::string>& header() const { return header_; }
+  /// Index of a column; -1 where there is none of that name.
+  int column(std::string_view name) const;
+  /// The same where the column must be there.
+  std::size_t required_column(std::string_view name) const;
+
+  /// Moves to the next row; false at the end. Empty lines are passed over.
+  bool next();
+  std::string_view text(std::size_t column) const;
+  /// The cell as a number; NaN where it is empty, nan or inf.
+  double number(std::size_t column) const;
+
+  const std::string& name() const { return name_; }
+  /// The line at which the current row begins, from 1.
+  std::size_t line() const { return line_; }
+  /// An error about a cell of the current row, to throw.
+  InputError error(std::size_t column, const std::string& found, const std::string& valid = {}) const;
+
+ private:
+  void read_header();
+  bool read_record();
+  InputError line_error(const std::string& found, const std::string& valid = {}) const;
+
+  std::unique_ptr<std::istream> file_;
+  std::istream* stream_;
+  std::string name_;
+  std::vector<std::string> header_;
+  std::string text_;               // the cells of the current row, one after the other
+  std::vector<std::size_t> ends_;  // where each of them ends
+  std::size_t line_ = 0;
+  std::size_t next_line_ = 1;
+};
+
+/// Builds a CSV text; write_file_atomically() takes it from there.
+class CsvWriter {
+ public:
+  explicit CsvWriter(const std::vector<std::string>& header);
+
+  /// Appends a cell to the row: the shortest text that reads back as the same number; NaN as an empty cell.
+  void number(double value);
+  void text(std::string_view value);
+  /// Throws std::logic_error where the row has not as many cells as the header.
+  void end_row();
+
+  const std::string& str() const { return csv_; }
+
+ private:
+  void separate();
+
+  std::string csv_;
+  std::size_t columns_;
+  std::size_t cells_ = 0;
+};
+
+}  // namespace truebearing

@@ -1,0 +1,38 @@
+// A number in a scenario: a value, or a distribution that each run draws from. In TOML: 200.0, { uniform = [-400, 400]
+// }, { normal = [0, 1000] } (mean, standard deviation), { log_uniform = [0.25, 4] } or { choice = [-600, 600] }.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "truebearing/core/random.hpp"
+#include "truebearing/io/table_reader.hpp"
+
+namespace truebearing {
+
+class Distribution {
+ public:
+  enum class Kind { fixed, uniform, normal, log_uniform, choice };
+
+  /// A number that is always the same.
+  Distribution(double value) : Distribution(Kind::fixed, {value}) {}  // NOLINT: a value is a distribution
+  /// `parameters` as in TOML. Throws InputError where they make no distribution.
+  Distribution(Kind kind, std::vector<double> parameters);
+
+  /// Takes exactly one uniform number from the stream, whatever the kind: to make one number of a scenario a
+  /// distribution does not change what the others draw.
+  double draw(RandomStream& stream) const;
+  bool is_fixed() const { return kind_ == Kind::fixed; }
+
+ private:
+  Kind kind_;
+  std::vector<double> parameters_;
+};
+
+/// Reads a number or a distribution all of whose draws lie in `range`; a normal, which knows no range, is for
+/// kAnyNumber only.
+Distribution read_distribution(TableReader& table, const std::string& key, Range range = kAnyNumber);
+Distribution read_distribution_or(TableReader& table, const std::string& key, double fallback,
+                                  Range range = kAnyNumber);
+
+}  // namespace truebearing

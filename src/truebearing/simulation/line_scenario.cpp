@@ -1,0 +1,63 @@
+#include "truebearing/simulation/line_scenario.hpp"
+
+#include <cmath>
+
+namespace truebearing {
+
+Recording LineScenario::simulate(const RunKey& key) const {
+  RandomStream scenario(key, StreamId::scenario);
+  RandomStream process(key, StreamId::process);
+  RandomStream measurement(key, StreamId::measurement);
+
+  Eigen::Vector2d x;
+  x(0) = parameters_.position_m.draw(scenario);
+  x(1) = parameters_.velocity_mps.draw(scenario);
+  const double scale = parameters_.process_noise_scale.draw(scenario);
+  const double noise = parameters_.noise.draw(scenario);
+  const double sigma_m = parameters_.noise_is_variance ? std::sqrt(noise) : noise;
+  const Eigen::Vector2d process_sigma = (scale * parameters_.process_noise_variance).cwiseSqrt();
+
+  Recording recording;
+  recording.measured = {"position_m"};
+  recording.truth_space = &line_space();
+  recording.truth.resize(1);
+  for (int k = 1; k <= parameters_.steps; ++k) {
+    x(0) += parameters_.period_s * x(1);
+    for (int i = 0; i < 2; ++i) x(i) += process_sigma(i) * process.normal();
+    Measurement taken;
+    taken.time_s = k * parameters_.period_s;
+    taken.z = BoundedVector::Constant(1, x(0) + sigma_m * measurement.normal());
+    if (parameters_.reported) taken.sigma = BoundedVector::Constant(1, sigma_m);
+    recording.measurements.push_back(std::move(taken));
+    recording.truth[0].x.emplace_back(x);
+  }
+  return recording;
+}
+
+std::unique_ptr<Scenario> read_line_scenario(TableReader& table) {
+  LineParameters parameters;
+  parameters.period_s = table.number("period_s", kPositive);
+  parameters.steps = static_cast<int>(table.integer("steps", 1, 1'000'000));
+  if (table.has("process_noise_variance")) {
+    const std::vector<double> variance = table.numbers("process_noise_variance", 2, kNonNegative);
+    parameters.process_noise_variance << variance[0], variance[1];
+  }
+  parameters.process_noise_scale = read_distribution_or(table, "process_noise_scale", 1.0, kNonNegative);
+
+  TableReader target = table.table("target");
+  parameters.position_m = read_distribution(target, "position_m");
+  parameters.velocity_mps = read_distribution(target, "velocity_mps");
+  target.finish();
+
+  TableReader sensor = table.table("sensor");
+  parameters.noise_is_variance = sensor.has("position_variance_m2");
+  if (sensor.has("position_sigma_m") == parameters.noise_is_variance)
+    throw sensor.error("", "needs one of two keys", "position_sigma_m or position_variance_m2");
+  parameters.noise =
+      read_distribution(sensor, parameters.noise_is_variance ? "position_variance_m2" : "position_sigma_m", kPositive);
+  parameters.reported = sensor.boolean_or("reported", false);
+  sensor.finish();
+  return std::make_unique<LineScenario>(std::move(parameters));
+}
+
+}  // namespace truebearing

@@ -1,0 +1,39 @@
+#include "truebearing/simulation/scenario.hpp"
+
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "truebearing/simulation/line_scenario.hpp"
+#include "truebearing/simulation/planar_flight_scenario.hpp"
+
+namespace truebearing {
+namespace {
+
+struct ScenarioKind {
+  const char* name;
+  std::unique_ptr<Scenario> (*read)(TableReader&);
+};
+constexpr std::array kKinds{ScenarioKind{"line", read_line_scenario},
+                            ScenarioKind{"planar_flight", read_planar_flight_scenario}};
+
+}  // namespace
+
+std::unique_ptr<Scenario> read_scenario(TableReader table) {
+  std::vector<std::string> names;
+  for (const ScenarioKind& kind : kKinds) names.emplace_back(kind.name);
+  const std::string name = table.choice("kind", names);
+  std::unique_ptr<Scenario> scenario;
+  for (const ScenarioKind& kind : kKinds)
+    if (kind.name == name) scenario = kind.read(table);
+  table.finish();
+  return scenario;
+}
+
+std::unique_ptr<Scenario> load_scenario(const std::filesystem::path& path) {
+  const toml::table table = read_toml_file(path);
+  return read_scenario(TableReader(table, path.string()));
+}
+
+}  // namespace truebearing

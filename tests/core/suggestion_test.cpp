@@ -1,0 +1,37 @@
+#include "truebearing/core/suggestion.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace truebearing {
+namespace {
+
+const std::vector<std::string> kNames{"position_m", "velocity_mps", "steps"};
+
+TEST(Suggestion, NearestByEdits) {
+  EXPECT_EQ(nearest_name("postion_m", kNames), "position_m");
+  EXPECT_EQ(nearest_name("velocity_kn", kNames), "velocity_mps");
+  EXPECT_EQ(nearest_name("step", kNames), "steps");
+}
+
+TEST(Suggestion, NothingIsNearToWhatIsFar) {
+  EXPECT_EQ(nearest_name("qqqqqqqqqq", kNames), "");
+  EXPECT_EQ(nearest_name("steps", {}), "");
+}
+
+TEST(Suggestion, ListsTheValidNames) {
+  EXPECT_EQ(suggestion("stepps", kNames), "did you mean \"steps\"? one of position_m, velocity_mps, steps");
+  EXPECT_EQ(suggestion("qqqqqqqqqq", kNames), "position_m, velocity_mps, steps");
+}
+
+TEST(Suggestion, ListsNoMoreThanTwelve) {
+  EXPECT_THAT(suggestion("qqqqqqqqqq", std::vector<std::string>(13, "a")), ::testing::EndsWith("a, ..."));
+  EXPECT_THAT(suggestion("qqqqqqqqqq", std::vector<std::string>(12, "a")), ::testing::EndsWith("a, a"));
+}
+
+TEST(Suggestion, HostileNameIsCheap) {
+  EXPECT_EQ(nearest_name(std::string(100'000'000, 'q'), kNames), "");
+}
+
+}  // namespace
+}  // namespace truebearing

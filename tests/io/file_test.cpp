@@ -1,0 +1,134 @@
+#include "truebearing/io/file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <thread>
+#include <vector>
+
+#include "tests/support/error_message.hpp"
+
+namespace truebearing {
+namespace {
+
+using ::testing::AllOf;
+using testing::error_message;
+using ::testing::HasSubstr;
+namespace fs = std::filesystem;
+
+constexpr std::size_t kAny = std::size_t{1} << 30;
+
+class FileTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "truebearing-test-XXXXXX").string();
+    ASSERT_NE(::mkdtemp(name.data()), nullptr);
+    folder_ = name;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::ptrdiff_t files() const { return std::distance(fs::directory_iterator(folder_), {}); }
+
+  fs::path folder_;
+};
+
+TEST_F(FileTest, WrittenTextReadsBack) {
+  const std::string text("line\n\0 and \xff", 12);
+  write_file_atomically(folder_ / "a", text);
+  EXPECT_EQ(read_text_file(folder_ / "a", kAny), text);
+  write_file_atomically(folder_ / "a", "shorter");
+  EXPECT_EQ(read_text_file(folder_ / "a", kAny), "shorter");
+  EXPECT_EQ(files(), 1);
+}
+
+TEST_F(FileTest, RelativePathIsWrittenWhereItSays) {
+  const fs::path before = fs::current_path();
+  fs::current_path(folder_);
+  write_file_atomically("a", "text");
+  fs::current_path(before);
+  EXPECT_EQ(read_text_file(folder_ / "a", kAny), "text");
+}
+
+TEST_F(FileTest, SizeLimitIsExact) {
+  write_file_atomically(folder_ / "a", std::string(100'000, 'x'));
+  EXPECT_EQ(read_text_file(folder_ / "a", 100'000).size(), 100'000u);
+  EXPECT_THAT(error_message([&] { read_text_file(folder_ / "a", 99'999); }), HasSubstr("too large"));
+  EXPECT_THAT(error_message([] { read_text_file("/dev/zero", 1000); }), HasSubstr("too large"));
+}
+
+TEST_F(FileTest, UnreadableFileIsAnErrorThatSaysWhy) {
+  EXPECT_THAT(error_message([&] { read_text_file(folder_ / "none", kAny); }),
+              AllOf(HasSubstr((folder_ / "none").string()), HasSubstr("No such file")));
+  EXPECT_THAT(error_message([&] { read_text_file(folder_, kAny); }), HasSubstr("Is a directory"));
+}
+
+TEST_F(FileTest, MissingFolderIsAnErrorThatSaysWhy) {
+  EXPECT_THAT(error_message([&] { write_file_atomically(folder_ / "none" / "a", "text"); }),
+              AllOf(HasSubstr((folder_ / "none" / "a").string()), HasSubstr("No such file")));
+  EXPECT_EQ(files(), 0);
+}
+
+TEST_F(FileTest, DeviceAndFolderAreNotReplaced) {
+  EXPECT_THAT(error_message([&] { write_file_atomically("/dev/null", "text"); }), HasSubstr("not a regular file"));
+  EXPECT_THAT(error_message([&] { write_file_atomically(folder_, "text"); }), HasSubstr("not a regular file"));
+}
+
+TEST_F(FileTest, SymbolicLinkStaysOne) {
+  write_file_atomically(folder_ / "a", "old");
+  fs::create_symlink("a", folder_ / "link");
+  write_file_atomically(folder_ / "link", "new");
+  EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
+  EXPECT_EQ(read_text_file(folder_ / "a", kAny), "new");
+}
+
+TEST_F(FileTest, WriteThatRunsOutOfSpaceLeavesTheOldFile) {
+  write_file_atomically(folder_ / "a", "old");
+  rlimit before{};
+  ::getrlimit(RLIMIT_FSIZE, &before);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{4096, before.rlim_max};
+  ::setrlimit(RLIMIT_FSIZE, &small);
+  const std::string message = error_message([&] { write_file_atomically(folder_ / "a", std::string(10'000, 'x')); });
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+
+  EXPECT_THAT(message, HasSubstr("File too large"));
+  EXPECT_EQ(read_text_file(folder_ / "a", kAny), "old");
+  EXPECT_EQ(files(), 1);
+}
+
+TEST_F(FileTest, OfTwoWritersOneWinsWhole) {
+  const auto write_often = [&](char letter) {
+    for (int i = 0; i < 20; ++i) write_file_atomically(folder_ / "a", std::string(200'000, letter));
+  };
+  write_often('x');
+  std::thread other(write_often, 'y');
+  std::thread reader([&] {
+    for (int i = 0; i < 200; ++i) {
+      const std::string text = read_text_file(folder_ / "a", kAny);
+      ASSERT_EQ(text, std::string(200'000, text[0]));
+    }
+  });
+  write_often('z');
+  other.join();
+  reader.join();
+  EXPECT_EQ(files(), 1);
+}
+
+TEST_F(FileTest, NameLeftOverFromAKilledWriterIsPassedOver) {
+  const auto leftover = [&](int i) {
+    return folder_ / (".truebearing-" + std::to_string(::getpid()) + "-" + std::to_string(i) + ".tmp");
+  };
+  // The names that this process would use next are all taken.
+  for (int i = 0; i < 2000; ++i) fs::create_symlink("nowhere", leftover(i));
+  write_file_atomically(folder_ / "a", "text");
+  EXPECT_EQ(read_text_file(folder_ / "a", kAny), "text");
+  EXPECT_TRUE(fs::is_symlink(leftover(1999)));
+}
+
+}  // namespace
+}  // namespace truebearing

@@ -1,0 +1,198 @@
+#include "truebearing/measurement/recording_csv.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "tests/support/error_message.hpp"
+#include "tests/support/real_data.hpp"
+#include "truebearing/core/angle.hpp"
+
+namespace truebearing {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using testing::error_message;
+using ::testing::HasSubstr;
+
+Recording read(const std::string& text) {
+  std::istringstream stream(text);
+  return read_recording(stream, "log.csv");
+}
+
+std::string error_of(const std::string& text) {
+  return error_message([&] { read(text); });
+}
+
+TEST(RecordingCsv, ReadsTimesAndMeasurements) {
+  const Recording log = read("position_m,time_s\n10,1\n11.5,2.5\n");
+  EXPECT_THAT(log.measured, ElementsAre("position_m"));
+  ASSERT_EQ(log.measurements.size(), 2u);
+  EXPECT_EQ(log.measurements[1].time_s, 2.5);
+  EXPECT_EQ(log.measurements[1].z(0), 11.5);
+  EXPECT_EQ(log.measurements[1].sigma.size(), 0);
+  EXPECT_FALSE(log.measurements[1].sensor);
+  EXPECT_EQ(log.truth_space, nullptr);
+  EXPECT_TRUE(log.truth.empty());
+}
+
+TEST(RecordingCsv, AnglesAreRadiansInside) {
+  const Recording log = read("time_s,bearing_deg,bearing_sigma_deg,frequency_hz,frequency_sigma_hz\n0,90,2,300,0.5\n");
+  EXPECT_THAT(log.measured, ElementsAre("bearing_deg", "frequency_hz"));
+  EXPECT_DOUBLE_EQ(log.measurements[0].z(0), kPi / 2.0);
+  EXPECT_DOUBLE_EQ(log.measurements[0].sigma(0), radians(2.0));
+  EXPECT_EQ(log.measurements[0].z(1), 300.0);
+  EXPECT_EQ(log.measurements[0].sigma(1), 0.5);
+}
+
+TEST(RecordingCsv, OwnShipMayBePositionOrPositionAndVelocity) {
+  const std::string header = "time_s,bearing_deg,sensor_east_m,sensor_north_m";
+  const Recording position = read(header + "\n0,90,5,6\n");
+  EXPECT_EQ(position.measurements[0].sensor->position_m, Eigen::Vector2d(5, 6));
+  EXPECT_EQ(position.measurements[0].sensor->velocity_mps, Eigen::Vector2d::Zero());
+  const Recording both = read(header + ",sensor_east_mps,sensor_north_mps\n0,90,5,6,-1,2\n");
+  EXPECT_EQ(both.measurements[0].sensor->velocity_mps, Eigen::Vector2d(-1, 2));
+  EXPECT_THAT(error_of("time_s,bearing_deg,sensor_east_m\n0,90,5\n"), HasSubstr("own-ship"));
+  EXPECT_THAT(error_of("time_s,bearing_deg,sensor_east_mps,sensor_north_mps\n0,90,5,6\n"), HasSubstr("own-ship"));
+  EXPECT_THAT(error_of(header + ",sensor_north_mps\n0,90,5,6,1\n"), HasSubstr("own-ship"));
+}
+
+TEST(RecordingCsv, UnusableCellMakesTheMeasurementMissing) {
+  for (const char* cell : {"", "nan", "inf", "-inf"}) {
+    const Recording z = read("time_s,position_m\n0,1\n1," + std::string(cell) + "\n2,3\n");
+    EXPECT_TRUE(z.measurements[1].is_missing()) << cell;
+    EXPECT_EQ(z.counts.missing, 1) << cell;
+    const Recording sigma = read("time_s,position_m,position_sigma_m\n0,1," + std::string(cell) + "\n");
+    EXPECT_TRUE(sigma.measurements[0].is_missing()) << cell;
+    EXPECT_EQ(sigma.counts.missing, 1) << cell;
+    const Recording sensor = read("time_s,range_m,sensor_east_m,sensor_north_m\n0,1,2," + std::string(cell) + "\n");
+    EXPECT_TRUE(sensor.measurements[0].is_missing()) << cell;
+    EXPECT_FALSE(sensor.measurements[0].sensor) << cell;
+  }
+}
+
+TEST(RecordingCsv, TextWhereANumberBelongsIsAnError) {
+  EXPECT_THAT(error_of("time_s,position_m\n0,1\n1,abc\n"), AllOf(HasSubstr("log.csv:3: position_m"), HasSubstr("abc")));
+}
+
+TEST(RecordingCsv, RepeatedTimeWithOtherValuesIsKept) {
+  const Recording log = read("time_s,position_m\n0,1\n0,2\n");
+  EXPECT_EQ(log.measurements.size(), 2u);
+  EXPECT_EQ(log.counts.repeated, 0);
+}
+
+TEST(RecordingCsv, IdenticalRowsCountOnce) {
+  const Recording log =
+      read("time_s,position_m,truth_position_m\n0,1,5\n0,1.0,5\n0,1,5\n1,,6\n1,,6\n2,1,5\n0.2e1,1,5\n");
+  EXPECT_EQ(log.measurements.size(), 3u);
+  EXPECT_EQ(log.truth[0].x.size(), 3u);
+  EXPECT_EQ(log.counts.repeated, 4);
+  EXPECT_EQ(log.counts.missing, 1);
+}
+
+TEST(RecordingCsv, DecreasingTimeIsAnErrorThatNamesTheRow) {
+  EXPECT_THAT(error_of("time_s,position_m\n0,1\n5,2\n4.5,3\n"),
+              AllOf(HasSubstr("log.csv:4: time_s"), HasSubstr("4.5"), HasSubstr("5")));
+}
+
+TEST(RecordingCsv, TimeMustBeThereAndFinite) {
+  EXPECT_THAT(error_of("tim_s,position_m\n0,1\n"), AllOf(HasSubstr("time_s"), HasSubstr("tim_s")));
+  for (const char* cell : {"", "nan", "inf"})
+    EXPECT_THAT(error_of("time_s,position_m\n" + std::string(cell) + ",1\n"), HasSubstr("log.csv:2: time_s")) << cell;
+}
+
+TEST(RecordingCsv, ColumnWithoutAKnownUnitIsAnError) {
+  EXPECT_THAT(error_of("time_s,position\n0,1\n"), AllOf(HasSubstr("position"), HasSubstr("_deg"), HasSubstr("_mps")));
+  EXPECT_THAT(error_of("time_s,speed_kn\n0,1\n"), HasSubstr("speed_kn: names no known unit"));
+  EXPECT_THAT(error_of("time_s,_m\n0,1\n"), HasSubstr("names no known unit"));
+  EXPECT_THAT(error_of("time_s,position_m,truth_depth_ft\n0,1,1\n"), HasSubstr("truth_depth_ft"));
+}
+
+TEST(RecordingCsv, SigmaMustBePositiveAndBelongToAColumn) {
+  for (const char* sigma : {"0", "-1"})
+    EXPECT_THAT(error_of("time_s,position_m,position_sigma_m\n0,1," + std::string(sigma) + "\n"),
+                AllOf(HasSubstr("log.csv:2: position_sigma_m"), HasSubstr("> 0")));
+  EXPECT_THAT(error_of("time_s,position_m,range_sigma_m\n0,1,1\n"),
+              AllOf(HasSubstr("range_sigma_m"), HasSubstr("valid: position_sigma_m")));
+  EXPECT_THAT(error_of("time_s,bearing_deg,bearing_sigma_rad\n0,1,1\n"), HasSubstr("valid: bearing_sigma_deg"));
+  EXPECT_THAT(error_of("time_s,east_m,north_m,east_sigma_m\n0,1,1,1\n"), HasSubstr("no column \"north_sigma_m\""));
+}
+
+TEST(RecordingCsv, LogMustMeasureSomething) {
+  EXPECT_THAT(error_of("time_s,truth_position_m\n0,1\n"), HasSubstr("0 measured columns"));
+  EXPECT_THAT(error_of("time_s,position_m\n"), HasSubstr("has no rows"));
+  EXPECT_THAT(error_of(""), HasSubstr("is empty"));
+  EXPECT_THAT(error_of("time_s,a_m,b_m,c_m,d_m,e_m,f_m,g_m,h_m,i_m\n"), HasSubstr("9 measured columns"));
+}
+
+TEST(RecordingCsv, TruthOfPositionsIsCompletedByVelocities) {
+  const Recording line = read("time_s,position_m,truth_position_m\n0,1,0\n2,1,6\n3,1,9\n");
+  EXPECT_EQ(line.truth_space, &line_space());
+  EXPECT_NEAR(line.truth[0].x[1](1), 3.0, 1e-12);
+  const Recording plane = read("time_s,range_m,truth_north_m,truth_east_m\n0,1,0,5\n1,1,-2,6\n");
+  EXPECT_EQ(plane.truth_space, &plane_space());
+  EXPECT_TRUE(plane.truth[0].x[1].isApprox(Eigen::Vector4d(6, -2, 1, -2), 1e-12));
+}
+
+TEST(RecordingCsv, TruthThatGivesVelocitiesKeepsThem) {
+  const Recording log = read("time_s,position_m,truth_position_m,truth_velocity_mps\n0,1,0,7\n1,1,3,\n");
+  EXPECT_EQ(log.truth[0].x[0](1), 7.0);
+  EXPECT_TRUE(std::isnan(log.truth[0].x[1](1)));
+}
+
+TEST(RecordingCsv, OtherTruthHasASpaceOfItsOwn) {
+  const Recording log = read("time_s,bearing_deg,truth_bearing_deg,truth_range_m\n0,1,180,500\n");
+  EXPECT_THAT(log.truth_space->components, ElementsAre("bearing_deg", "range_m"));
+  EXPECT_DOUBLE_EQ(log.truth[0].x[0](0), kPi);
+  EXPECT_EQ(log.truth[0].x[0](1), 500.0);
+}
+
+TEST(RecordingCsv, WrittenLogReadsBack) {
+  const std::string text =
+      "time_s,east_m,north_m,east_sigma_m,north_sigma_m,sensor_east_m,sensor_north_m,sensor_east_mps,sensor_north_mps,"
+      "truth_east_m,truth_north_m,truth_east_mps,truth_north_mps\n"
+      "0,0.1,2,3,4,5,6,7,8,9,10,11,12\n"
+      "1.5,,2,3,4,5,6,7,8,9,10,,12\n"
+      "1.5,1,2,3,4,5,6,7,8,9,10,11,12\n";
+  EXPECT_EQ(write_recording(read(text)), text);
+  const std::string bare = "time_s,position_m\n0,1\n1,\n2,3\n";
+  EXPECT_EQ(write_recording(read(bare)), bare);
+}
+
+TEST(RecordingCsv, WrittenAnglesAreDegreesAgain) {
+  const Recording log = read("time_s,bearing_deg,bearing_sigma_deg\n0,33.3,0.7\n");
+  const Recording again = read(write_recording(log));
+  EXPECT_DOUBLE_EQ(again.measurements[0].z(0), radians(33.3));
+  EXPECT_DOUBLE_EQ(again.measurements[0].sigma(0), radians(0.7));
+}
+
+TEST(RecordingCsv, SeveralTrueTracksDoNotFitALog) {
+  Recording log = read("time_s,position_m,truth_position_m\n0,1,0\n");
+  log.truth.push_back(log.truth[0]);
+  EXPECT_THAT(error_message([&] { write_recording(log); }), HasSubstr("2 true tracks"));
+}
+
+TEST(RecordingCsv, ReadsTheRecordedFlight) {
+  const std::filesystem::path path = testing::real_data("radar_range_ajaccio.csv");
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is absent";
+  const Recording log = read_recording(path);
+  ASSERT_EQ(log.measurements.size(), 2629u);
+  EXPECT_EQ(log.counts.missing + log.counts.repeated, 0);
+  double squared_m2 = 0.0, fastest_mps = 0.0;
+  for (std::size_t k = 0; k < log.measurements.size(); ++k) {
+    EXPECT_EQ(log.measurements[k].sigma(0), 150.0);
+    squared_m2 += std::pow(log.measurements[k].z(0) - log.truth[0].x[k](0), 2);
+    fastest_mps = std::max(fastest_mps, std::abs(log.truth[0].x[k](1)));
+  }
+  // 150 m of noise over 2629 rows: a chi-square interval of 4.5 standard deviations.
+  EXPECT_NEAR(squared_m2 / 2629.0, 22500.0, 4.5 * 22500.0 * std::sqrt(2.0 / 2629.0));
+  EXPECT_GT(fastest_mps, 50.0);
+  EXPECT_LT(fastest_mps, 200.0);
+}
+
+}  // namespace
+}  // namespace truebearing

@@ -1,0 +1,48 @@
+#include "truebearing/measurement/velocity_truth.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace truebearing {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using Values = std::vector<double>;
+
+TEST(VelocityTruth, LineHasItsSlopeAtUnevenTimes) {
+  const Values t{1e6, 1e6 + 1.0, 1e6 + 5.0, 1e6 + 5.5, 1e6 + 20.0, 1e6 + 21.0};
+  Values p;
+  for (const double time_s : t) p.push_back(3.0 - 7.5 * time_s);
+  for (const double v : velocity_truth(t, p)) EXPECT_NEAR(v, -7.5, 1e-7);
+}
+
+TEST(VelocityTruth, UsesTwoNeighboursOnEitherSide) {
+  const Values t{0, 1, 2, 3, 4, 5, 6};
+  const Values v = velocity_truth(t, Values{0, 0, 0, 10, 0, 0, 0});
+  // Least-squares slopes: sum((t - mean) p) / sum((t - mean)^2), by hand.
+  EXPECT_NEAR(v[0], 0.0, 1e-12);
+  EXPECT_NEAR(v[1], 1.5 * 10.0 / 5.0, 1e-12);
+  EXPECT_NEAR(v[2], 1.0 * 10.0 / 10.0, 1e-12);
+  EXPECT_NEAR(v[3], 0.0, 1e-12);
+  EXPECT_NEAR(v[4], -1.0 * 10.0 / 10.0, 1e-12);
+  EXPECT_NEAR(v[5], -1.5 * 10.0 / 5.0, 1e-12);
+  EXPECT_NEAR(v[6], 0.0, 1e-12);
+}
+
+TEST(VelocityTruth, MissingPositionsAreLeftOut) {
+  const Values v = velocity_truth(Values{0, 1, 2, 3}, Values{0, kNaN, 4, 6});
+  EXPECT_NEAR(v[0], 2.0, 1e-12);
+  EXPECT_TRUE(std::isnan(v[1]));
+  EXPECT_NEAR(v[2], 2.0, 1e-12);
+}
+
+TEST(VelocityTruth, OneTimeGivesNoVelocity) {
+  EXPECT_TRUE(std::isnan(velocity_truth(Values{1.0}, Values{2.0})[0]));
+  EXPECT_TRUE(std::isnan(velocity_truth(Values{0.1, 0.1, 0.1}, Values{2.0, 3.0, 4.0})[1]));
+  EXPECT_TRUE(velocity_truth({}, {}).empty());
+}
+
+}  // namespace
+}  // namespace truebearing

@@ -1,9 +1,9 @@
-// The normalized fuzzy neural network (NFNN) of Chao and Teng 1995 as Lee et al. use it, eqs. (11) and (12): rule j says
-// "IF u_1 is A_1j AND ... AND u_d is A_dj THEN y = w_j" with Gaussian terms
+// The normalized fuzzy neural network (NFNN) of Chao and Teng 1995 as Lee et al. use it, eqs. (11) and (12): rule j
+// says "IF u_1 is A_1j AND ... AND u_d is A_dj THEN y = w_j" with Gaussian terms
 //     mu_ij(u_i) = exp(-(u_i - c_ji)^2 / (2 s_ji^2)),
 // and the output is y = sum_j phi_j w_j with phi_j the rule strengths prod_i mu_ij, normalised over the rules. The
-// strengths stay in the log domain until the normalisation (a softmax), so that inputs far from every rule do not give 0/0:
-// the output is always in the hull of the consequents.
+// strengths stay in the log domain until the normalisation (a softmax), so that inputs far from every rule do not give
+// 0/0: the output is always in the hull of the consequents.
 //
 // d inputs, M rules, p outputs. Inputs are standardised, u = clip((input - mean) / scale), before the rules see them;
 // outputs are multiplied by output_scale.
@@ -54,8 +54,8 @@ class FuzzyNetwork {
  private:
   Parameters parameters_;
   // The exponents as they are evaluated, -((u - c) / (sqrt(2) s))^2, one column per rule: precomputed.
-  Eigen::MatrixXd scaled_centres_;   // (d x M), c / (sqrt(2) s)
-  Eigen::MatrixXd inverse_widths_;   // (d x M), 1 / (sqrt(2) s)
+  Eigen::MatrixXd scaled_centres_;      // (d x M), c / (sqrt(2) s)
+  Eigen::MatrixXd inverse_widths_;      // (d x M), 1 / (sqrt(2) s)
   Eigen::MatrixXd scaled_consequents_;  // (p x M), in the units of the outputs
 };
 

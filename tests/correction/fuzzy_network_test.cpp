@@ -1,0 +1,200 @@
+#include "truebearing/correction/fuzzy_network.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <new>
+#include <vector>
+
+#include "truebearing/core/error.hpp"
+#include "truebearing/core/random.hpp"
+
+// Counts what goes to the heap through operator new or Eigen, for the whole test program.
+namespace {
+std::size_t allocations = 0;
+}
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+
+namespace truebearing {
+namespace {
+
+constexpr double kExact = 1e-12;
+constexpr int kInputs = 4;
+constexpr int kRules = 16;
+constexpr int kOutputs = 2;
+
+RandomStream test_stream(std::uint64_t run) {
+  return {RunKey{.run = run}, StreamId::test};
+}
+
+FuzzyNetwork::Parameters random_parameters(std::uint64_t run) {
+  RandomStream random = test_stream(run);
+  const auto normal = [&] { return random.normal(); };
+  const auto positive = [&] { return random.uniform(0.3, 2.0); };
+  return {.input_mean = Eigen::VectorXd::NullaryExpr(kInputs, normal),
+          .input_scale = Eigen::VectorXd::NullaryExpr(kInputs, positive),
+          .input_clip = 4.0,
+          .centres = Eigen::MatrixXd::NullaryExpr(kRules, kInputs, normal),
+          .widths = Eigen::MatrixXd::NullaryExpr(kRules, kInputs, positive),
+          .consequents = Eigen::MatrixXd::NullaryExpr(kRules, kOutputs, normal),
+          .output_scale = Eigen::VectorXd::NullaryExpr(kOutputs, positive)};
+}
+
+FuzzyNetwork::Inputs random_input(RandomStream& random, double spread) {
+  return FuzzyNetwork::Inputs::NullaryExpr(kInputs, [&] { return spread * random.normal(); });
+}
+
+FuzzyNetwork::Outputs evaluate(const FuzzyNetwork& network, const FuzzyNetwork::Inputs& input) {
+  FuzzyNetwork::Strengths phi;
+  network.strengths(input, phi);
+  return network.output(phi);
+}
+
+TEST(FuzzyNetwork, IsTheWeightedSumOfThePaper) {
+  const FuzzyNetwork::Parameters p = random_parameters(1);
+  const FuzzyNetwork network(p);
+  RandomStream random = test_stream(2);
+  for (int n = 0; n < 100; ++n) {
+    const FuzzyNetwork::Inputs input = random_input(random, 1.0);
+    Eigen::VectorXd numerator = Eigen::VectorXd::Zero(kOutputs);  // Equation (12)
+    double denominator = 0.0;
+    for (int j = 0; j < kRules; ++j) {
+      double strength = 1.0;
+      for (int i = 0; i < kInputs; ++i) {
+        const double u = std::clamp((input[i] - p.input_mean[i]) / p.input_scale[i], -p.input_clip, p.input_clip);
+        strength *= std::exp(-0.5 * std::pow((u - p.centres(j, i)) / p.widths(j, i), 2));
+      }
+      numerator += strength * p.consequents.row(j).transpose();
+      denominator += strength;
+    }
+    const Eigen::VectorXd expected = p.output_scale.cwiseProduct(numerator / denominator);
+    EXPECT_LT((evaluate(network, input) - expected).norm(), kExact * (1.0 + expected.norm()));
+  }
+}
+
+TEST(FuzzyNetwork, StrengthsAreNotNegativeAndSumToOne) {
+  const FuzzyNetwork network(random_parameters(3));
+  RandomStream random = test_stream(4);
+  FuzzyNetwork::Strengths phi;
+  for (const double spread : {0.1, 1.0, 10.0, 1e6}) {
+    network.strengths(random_input(random, spread), phi);
+    EXPECT_GE(phi.minCoeff(), 0.0);
+    EXPECT_NEAR(phi.sum(), 1.0, kExact);
+  }
+}
+
+TEST(FuzzyNetwork, OutputStaysInTheHullOfTheConsequents) {
+  const FuzzyNetwork::Parameters p = random_parameters(5);
+  const FuzzyNetwork network(p);
+  RandomStream random = test_stream(6);
+  const Eigen::MatrixXd scaled = p.consequents * p.output_scale.asDiagonal();
+  for (int n = 0; n < 200; ++n) {
+    const FuzzyNetwork::Outputs y = evaluate(network, random_input(random, 0.1 * n));
+    for (int o = 0; o < kOutputs; ++o) {
+      EXPECT_LE(y[o], scaled.col(o).maxCoeff() + kExact);
+      EXPECT_GE(y[o], scaled.col(o).minCoeff() - kExact);
+    }
+  }
+}
+
+TEST(FuzzyNetwork, FarInputsGiveFiniteOutputs) {
+  FuzzyNetwork::Parameters p = random_parameters(7);
+  p.widths.setConstant(1e-3);
+  p.input_clip = 1e6;
+  const FuzzyNetwork network(p);
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double far : {1e3, 1e300, infinity, -infinity}) {
+    EXPECT_TRUE(evaluate(network, FuzzyNetwork::Inputs::Constant(kInputs, far)).allFinite()) << far;
+  }
+}
+
+TEST(FuzzyNetwork, InputsBeyondTheClipChangeNothing) {
+  const FuzzyNetwork::Parameters p = random_parameters(8);
+  const FuzzyNetwork network(p);
+  const FuzzyNetwork::Inputs edge = p.input_mean + 4.0 * p.input_scale;
+  const FuzzyNetwork::Inputs beyond = p.input_mean + 40.0 * p.input_scale;
+  EXPECT_LT((evaluate(network, edge) - evaluate(network, beyond)).norm(), kExact);
+}
+
+TEST(FuzzyNetwork, NotANumberIsNotHidden) {
+  const FuzzyNetwork network(random_parameters(9));
+  for (int i = 0; i < kInputs; ++i) {
+    FuzzyNetwork::Inputs input = FuzzyNetwork::Inputs::Zero(kInputs);
+    input[i] = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_TRUE(evaluate(network, input).array().isNaN().all());
+  }
+}
+
+TEST(FuzzyNetwork, RuleOrderChangesNothing) {
+  const FuzzyNetwork::Parameters p = random_parameters(10);
+  FuzzyNetwork::Parameters reversed = p;
+  reversed.centres = p.centres.colwise().reverse();
+  reversed.widths = p.widths.colwise().reverse();
+  reversed.consequents = p.consequents.colwise().reverse();
+  const FuzzyNetwork network(p);
+  const FuzzyNetwork other(reversed);
+  RandomStream random = test_stream(11);
+  for (int n = 0; n < 100; ++n) {
+    const FuzzyNetwork::Inputs input = random_input(random, 2.0);
+    EXPECT_LT((evaluate(network, input) - evaluate(other, input)).norm(), kExact);
+  }
+}
+
+TEST(FuzzyNetwork, EvaluationDoesNotAllocate) {
+  const FuzzyNetwork network(random_parameters(12));
+  RandomStream random = test_stream(13);
+  FuzzyNetwork::Strengths phi;
+  double sum = 0.0;
+  const std::size_t before = allocations;
+  for (int n = 0; n < 10; ++n) {
+    network.strengths(random_input(random, 1.0), phi);
+    sum += network.output(phi).sum();
+  }
+  EXPECT_EQ(allocations, before);
+  EXPECT_TRUE(std::isfinite(sum));
+  const std::vector<int> counted(1);
+  EXPECT_GT(allocations, before) << "the counter does not count";
+}
+
+TEST(FuzzyNetwork, RefusesBadParameters) {
+  const FuzzyNetwork::Parameters good = random_parameters(14);
+  const auto refuses = [&](auto spoil) {
+    FuzzyNetwork::Parameters bad = good;
+    spoil(bad);
+    EXPECT_THROW(FuzzyNetwork{bad}, InputError);
+  };
+  using Parameters = FuzzyNetwork::Parameters;
+  EXPECT_THROW(FuzzyNetwork{Parameters{}}, InputError);
+  refuses([](Parameters& p) { p.input_mean.resize(3); });
+  refuses([](Parameters& p) { p.widths = p.widths.leftCols(3).eval(); });
+  refuses([](Parameters& p) { p.consequents = p.consequents.topRows(3).eval(); });
+  refuses([](Parameters& p) { p.output_scale.resize(0); });
+  refuses([](Parameters& p) { p.input_scale[1] = 0.0; });
+  refuses([](Parameters& p) { p.widths(2, 1) = -1.0; });
+  refuses([](Parameters& p) { p.centres(2, 1) = std::numeric_limits<double>::quiet_NaN(); });
+  refuses([](Parameters& p) { p.consequents(0, 0) = std::numeric_limits<double>::infinity(); });
+  refuses([](Parameters& p) { p.input_clip = 0.0; });
+  refuses([](Parameters& p) { p.widths(0, 0) = 1e-310; });
+  refuses([](Parameters& p) {
+    p.centres.setZero(FuzzyNetwork::kMaxRules + 1, kInputs);
+    p.widths.setOnes(FuzzyNetwork::kMaxRules + 1, kInputs);
+    p.consequents.setZero(FuzzyNetwork::kMaxRules + 1, kOutputs);
+  });
+}
+
+}  // namespace
+}  // namespace truebearing

@@ -1,0 +1,128 @@
+#include "training/variable_projection.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <vector>
+
+#include "training/k_means.hpp"
+#include "training/projected_cost.hpp"
+
+namespace truebearing {
+namespace {
+
+void validate(const VariableProjectionOptions& options) {
+  constexpr double kLarge = 1e9;
+  require_option("iterations", options.iterations, 0, kLarge);
+  require_option("learning_rate", options.learning_rate, 1e-9, 10.0);
+  require_option("ridge", options.ridge, 1e-12, 1e6);
+  require_option("input_clip", options.input_clip, 0.1, 100.0);
+  require_option("width_floor", options.width_floor, 1e-3, 100.0);
+  require_option("max_rows", static_cast<double>(options.max_rows), options.rules, kLarge);
+}
+
+// The distance from each centre to its nearest neighbour, the same for all inputs.
+Eigen::MatrixXd neighbour_widths(const Eigen::MatrixXd& centres, double floor) {
+  Eigen::MatrixXd widths(centres.rows(), centres.cols());
+  for (Eigen::Index j = 0; j < centres.rows(); ++j) {
+    Eigen::VectorXd distances = (centres.rowwise() - centres.row(j)).rowwise().norm();
+    distances[j] = std::numeric_limits<double>::infinity();
+    const double nearest = centres.rows() > 1 ? distances.minCoeff() : 1.0;
+    widths.row(j).setConstant(std::max(nearest, floor));
+  }
+  return widths;
+}
+
+// At most max_rows rows, mirror images included.
+NormalisedRows draw_rows(const FuzzyTrainingData& data, Eigen::Index max_rows, RandomStream& random,
+                         const FuzzyNetwork::Parameters& normalisation) {
+  const Eigen::Index wanted = data.mirrored() ? (max_rows + 1) / 2 : max_rows;
+  return normalised_rows(data, normalisation, stratified_rows(data.rows(), wanted, random));
+}
+
+class Adam {
+ public:
+  explicit Adam(Eigen::Index rows, Eigen::Index cols)
+      : mean_(Eigen::ArrayXXd::Zero(rows, cols)), square_(Eigen::ArrayXXd::Zero(rows, cols)) {}
+
+  /// The change of the parameters at step t = 1, 2, ...
+  Eigen::MatrixXd step(const Eigen::MatrixXd& gradient, double rate, int t) {
+    mean_ = kMeanDecay * mean_ + (1.0 - kMeanDecay) * gradient.array();
+    square_ = kSquareDecay * square_ + (1.0 - kSquareDecay) * gradient.array().square();
+    const double mean_bias = 1.0 - std::pow(kMeanDecay, t);
+    const double square_bias = 1.0 - std::pow(kSquareDecay, t);
+    return -rate * (mean_ / mean_bias) / ((square_ / square_bias).sqrt() + kSmall);
+  }
+
+ private:
+  static constexpr double kMeanDecay = 0.9;
+  static constexpr double kSquareDecay = 0.999;
+  static constexpr double kSmall = 1e-8;
+  Eigen::ArrayXXd mean_;
+  Eigen::ArrayXXd square_;
+};
+
+// Every iteration draws its rows afresh, so that the loop sees all the data at the price of a sample: the rows of one
+// run are alike, and a fixed sample would be learnt by heart.
+void descend(const FuzzyTrainingData& data, const VariableProjectionOptions& options, RandomStream& random,
+             const TrainingProgress& progress, FuzzyNetwork::Parameters& parameters) {
+  ProjectedCost projected_cost(data.weights(), options.ridge);
+  ProjectedCost::Gradient gradient;
+  Eigen::MatrixXd log_widths = parameters.widths.array().log();
+  Adam centre_steps(log_widths.rows(), log_widths.cols());
+  Adam width_steps(log_widths.rows(), log_widths.cols());
+  for (int iteration = 1; iteration <= options.iterations; ++iteration) {
+    const NormalisedRows sample = draw_rows(data, options.max_rows, random, parameters);
+    const double cost =
+        projected_cost.evaluate(sample.inputs, sample.targets, parameters.centres, parameters.widths, gradient);
+    if (progress) progress(iteration, options.iterations, cost);
+    const double phase = std::numbers::pi * (iteration - 1) / options.iterations;
+    const double rate = 0.5 * options.learning_rate * (1.0 + std::cos(phase));
+    parameters.centres += centre_steps.step(gradient.centres, rate, iteration);
+    log_widths += width_steps.step(gradient.log_widths, rate, iteration);
+    log_widths = log_widths.cwiseMax(std::log(options.width_floor));
+    parameters.widths = log_widths.array().exp();
+  }
+}
+
+void fit_consequents(const FuzzyTrainingData& data, double ridge, TrainedFuzzyNetwork& trained) {
+  FuzzyNetwork::Parameters& parameters = trained.parameters;
+  const Eigen::MatrixXd coefficients = exponent_coefficients(parameters.centres, parameters.widths);
+  NormalEquations equations(parameters.centres.rows(), data.labels.cols());
+  Eigen::MatrixXd phi;
+  std::vector<Eigen::Index> rows;
+  const Eigen::Index step = data.mirrored() ? kBlockRows / 2 : kBlockRows;
+  for (Eigen::Index first = 0; first < data.rows(); first += step) {
+    rows.resize(static_cast<std::size_t>(std::min(step, data.rows() - first)));
+    std::iota(rows.begin(), rows.end(), first);
+    const NormalisedRows block = normalised_rows(data, parameters, rows);
+    phi.resize(block.inputs.rows(), parameters.centres.rows());
+    block_strengths(exponent_basis(block.inputs), coefficients, phi);
+    equations.add(phi, block.targets);
+  }
+  parameters.consequents = equations.consequents(ridge);
+  trained.cost = equations.cost(parameters.consequents, ridge).dot(data.weights());
+  trained.usage = equations.usage();
+  trained.local_mean = equations.local_mean() * parameters.output_scale.asDiagonal();
+}
+
+}  // namespace
+
+TrainedFuzzyNetwork train_variable_projection(const FuzzyTrainingData& data, const VariableProjectionOptions& options,
+                                              const TrainingProgress& progress) {
+  validate(data, options.rules);
+  validate(options);
+  TrainedFuzzyNetwork trained;
+  trained.parameters = normalisation(data, options.input_clip);
+  RandomStream random = learning_stream(options.seed);
+  const NormalisedRows sample = draw_rows(data, options.max_rows, random, trained.parameters);
+  trained.parameters.centres = k_means(sample.inputs, options.rules, random);
+  trained.parameters.widths = neighbour_widths(trained.parameters.centres, options.width_floor);
+  descend(data, options, random, progress, trained.parameters);
+  fit_consequents(data, options.ridge, trained);
+  return trained;
+}
+
+}  // namespace truebearing

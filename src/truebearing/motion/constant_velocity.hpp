@@ -1,0 +1,33 @@
+// Constant velocity in Dim directions: x = [positions (Dim), velocities (Dim)] in m and m/s; in the plane
+// [east, north, v_east, v_north]. F = [I, dt I; 0, I] (n x n, n = 2 Dim), Q from the noise policy.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "truebearing/motion/motion_model.hpp"
+#include "truebearing/motion/process_noise.hpp"
+
+namespace truebearing {
+
+template <int Dim, typename Noise, typename ScalarType = double>
+struct ConstantVelocity {
+  using Scalar = ScalarType;
+  static constexpr int kStates = 2 * Dim;
+  using Matrix = Eigen::Matrix<Scalar, kStates, kStates>;
+
+  Noise noise;
+
+  Matrix F(Scalar dt_s) const {
+    Matrix transition = Matrix::Identity();
+    for (int i = 0; i < Dim; ++i) transition(i, Dim + i) = dt_s;
+    return transition;
+  }
+
+  Matrix Q(Scalar dt_s) const { return noise.template Q<Dim, Scalar>(dt_s); }
+};
+
+static_assert(LinearMotionModel<ConstantVelocity<1, ContinuousWhiteNoise>>);
+static_assert(LinearMotionModel<ConstantVelocity<2, DiscreteWhiteNoise, float>>);
+static_assert(LinearMotionModel<ConstantVelocity<2, FixedNoise<4>>>);
+
+}  // namespace truebearing

@@ -41,7 +41,8 @@ void run_compare(const Options& options, bool seed_given) {
   }
   std::unique_ptr<Scenario> recorded;
   if (!options.truth.empty()) recorded = std::make_unique<RecordedScenario>(read_recording(options.truth));
-  const Scenario& scenario = recorded ? *recorded : study.scenario();
+  const std::vector<NamedScenario> scenarios =
+      recorded ? std::vector<NamedScenario>{{options.truth, recorded.get()}} : study.evaluation_scenarios();
 
   ComparisonOptions comparison_options = study.comparison_options();
   comparison_options.seed = seed;
@@ -52,10 +53,10 @@ void run_compare(const Options& options, bool seed_given) {
   {
     ProgressLine progress("compare", options.quiet);
     comparison_options.progress = progress.callback();
-    comparison = compare(trackers, scenario, comparison_options);
+    comparison = compare(trackers, scenarios, comparison_options);
   }
   comparison.study = study.name();
-  const Recording timed = scenario.simulate({seed, Role::evaluation, 0});
+  const Recording timed = scenarios.front().scenario->simulate({seed, Role::evaluation, 0});
   for (int i = 0; i < trackers.size(); ++i)
     comparison.ns_per_step.emplace_back(trackers.name(i), time_per_step_ns(*standalone(study, trackers.name(i), models), timed));
 

@@ -105,7 +105,8 @@ void track(const Options& options) {
     ComparisonOptions comparison_options = study.comparison_options();
     comparison_options.runs = 1;
     comparison_options.threads = 1;
-    Comparison comparison = compare(trackers, LogScenario(recording), comparison_options);
+    const LogScenario scenario(recording);
+    Comparison comparison = compare(trackers, {{options.log, &scenario}}, comparison_options);
     comparison.study = study.name() + " on " + options.log;
     if (!to_stdout) fmt::print("\n{}", comparison_table(comparison));
     if (!options.json.empty()) write_output(options.json, comparison_json(comparison));

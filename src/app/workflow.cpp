@@ -25,7 +25,7 @@ std::string validation_scores(const Study& study, const std::string& name, const
   comparison_options.runs = kValidationRuns;
   comparison_options.threads = options.threads;
   comparison_options.scoring = study.scoring();
-  const Comparison comparison = compare(trackers, study.scenario(), comparison_options);
+  const Comparison comparison = compare(trackers, {{study.name(), &study.scenario()}}, comparison_options);
   std::string text;
   for (const TrackerSummary& summary : comparison.trackers) {
     text += fmt::format("{}{}", text.empty() ? "" : "; ", summary.name);

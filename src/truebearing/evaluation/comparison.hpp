@@ -35,12 +35,19 @@ struct Comparison {
   std::vector<Pair> pairs;
   std::vector<std::string> bounds;
   std::vector<std::pair<std::string, double>> ns_per_step;  ///< by tracker; timings, the only figures that vary
+  std::vector<std::pair<std::string, Comparison>> sets;     ///< where there were several: each by itself
 
   const TrackerSummary* tracker(const std::string& name) const;
 };
 
-/// Runs the trackers on `runs` evaluation runs of the scenario. The same for any number of threads.
-Comparison compare(const TrackerSet& trackers, const Scenario& scenario, const ComparisonOptions& options);
+struct NamedScenario {
+  std::string name;
+  const Scenario* scenario;
+};
+
+/// Runs the trackers on `runs` evaluation runs of each scenario. With several, the figures are those over all of them together and
+/// `sets` has each by itself. The same for any number of threads.
+Comparison compare(const TrackerSet& trackers, const std::vector<NamedScenario>& scenarios, const ComparisonOptions& options);
 
 /// Median time of a step of one tracker over `recording`, in nanoseconds.
 double time_per_step_ns(Tracker& tracker, const Recording& recording);

@@ -1,8 +1,11 @@
 #include "truebearing/evaluation/report.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include "truebearing/io/json_file.hpp"
 
 namespace truebearing {
 namespace {
@@ -94,21 +97,32 @@ std::string aligned(const std::vector<std::vector<std::string>>& rows) {
   return text;
 }
 
+using Columns = std::vector<QuantitySummary>;
+
+// The quantities of the tracker that has most of them: a raw measurement may lack the velocity.
+const Columns& columns_of(const Comparison& comparison) {
+  const auto most = std::max_element(comparison.trackers.begin(), comparison.trackers.end(), [](const auto& a, const auto& b) {
+    return a.quantities.size() < b.quantities.size();
+  });
+  return most->quantities;
+}
+
 std::vector<std::string> heading(const Comparison& comparison) {
   std::vector<std::string> row{"tracker"};
-  for (const QuantitySummary& quantity : comparison.trackers.front().quantities) {
+  for (const QuantitySummary& quantity : columns_of(comparison)) {
     row.push_back(fmt::format("{} RMSE {}", name_of(quantity.name), unit_of(quantity.name)));
     row.push_back("+-");
     if (comparison.tracker(kPlain)) row.push_back("/plain");
   }
-  row.insert(row.end(), {"NEES", "cover95", "gate", "ns/step"});
+  row.insert(row.end(), {"NEES", "cover95", "gate"});
+  if (!comparison.ns_per_step.empty()) row.push_back("ns/step");
   return row;
 }
 
 std::vector<std::string> table_row(const Comparison& comparison, const TrackerSummary& summary) {
   const TrackerSummary* plain = comparison.tracker(kPlain);
   std::vector<std::string> row{summary.name};
-  for (const QuantitySummary& column : comparison.trackers.front().quantities) {
+  for (const QuantitySummary& column : columns_of(comparison)) {
     const QuantitySummary* quantity = summary.quantity(column.name);
     row.push_back(quantity ? figure(quantity->rmse) : "-");
     row.push_back(quantity ? figure(quantity->rmse_se) : "-");
@@ -117,48 +131,27 @@ std::vector<std::string> table_row(const Comparison& comparison, const TrackerSu
   row.push_back(fmt::format("{}/{}", figure(summary.nees), summary.dimension));
   row.push_back(figure(summary.coverage95));
   row.push_back(summary.corrected_steps > 0 ? figure(summary.mean_gate) : "");
-  double ns = std::nan("");
-  for (const auto& [name, value] : comparison.ns_per_step)
-    if (name == summary.name) ns = value;
-  row.push_back(std::isfinite(ns) ? fmt::format("{:.0f}", ns) : "");
+  for (const auto& [name, ns] : comparison.ns_per_step)
+    if (name == summary.name) row.push_back(fmt::format("{:.0f}", ns));
   return row;
 }
 
-}  // namespace
-
-std::string comparison_table(const Comparison& comparison) {
-  std::string text = fmt::format("{}: {} runs, seed {}\n\n", comparison.study, comparison.runs, comparison.seed);
-  // The columns are those of the tracker with the most quantities, which comes first for the heading.
-  Comparison ordered = comparison;
-  if (ordered.trackers.empty()) return text;
-  std::size_t widest = 0;
-  for (std::size_t i = 0; i < ordered.trackers.size(); ++i)
-    if (ordered.trackers[i].quantities.size() > ordered.trackers[widest].quantities.size()) widest = i;
-  Comparison columns = comparison;
-  std::swap(columns.trackers[0], columns.trackers[widest]);
-  std::vector<std::vector<std::string>> rows{heading(columns)};
-  for (const TrackerSummary& summary : comparison.trackers) rows.push_back(table_row(columns, summary));
-  text += aligned(rows);
-
-  if (!comparison.pairs.empty()) {
-    rows.assign(1, {"\npaired, per-run RMSE", "", "mean", "+-", "standard errors"});
-    for (const Comparison::Pair& pair : comparison.pairs)
-      for (const PairedDifference& difference : pair.differences)
-        rows.push_back({pair.a + " - " + pair.b, name_of(difference.quantity) + " " + unit_of(difference.quantity),
-                        figure(difference.mean), figure(difference.se),
-                        std::isfinite(difference.se) && difference.se > 0.0
-                            ? fmt::format("{:+.1f}", difference.mean / difference.se) : "-"});
-    text += aligned(rows);
-  }
-  return text;
+std::string tables(const Comparison& comparison) {
+  std::vector<std::vector<std::string>> rows{heading(comparison)};
+  for (const TrackerSummary& summary : comparison.trackers) rows.push_back(table_row(comparison, summary));
+  std::string text = aligned(rows);
+  if (comparison.pairs.empty()) return text;
+  rows.assign(1, {"paired, per-run RMSE", "", "mean", "+-", "in standard errors"});
+  for (const Comparison::Pair& pair : comparison.pairs)
+    for (const PairedDifference& difference : pair.differences)
+      rows.push_back({pair.a + " - " + pair.b, name_of(difference.quantity) + " " + unit_of(difference.quantity),
+                      figure(difference.mean), figure(difference.se),
+                      difference.se > 0.0 ? fmt::format("{:+.1f}", difference.mean / difference.se) : "-"});
+  return text + "\n" + aligned(rows);
 }
 
-std::string comparison_json(const Comparison& comparison) {
-  Json json;
-  json["study"] = comparison.study;
-  json["seed"] = comparison.seed;
-  json["runs"] = comparison.runs;
-  json["version"] = TRUEBEARING_VERSION;
+// What a comparison, or one set of it, has to say besides where it comes from.
+void add_figures(const Comparison& comparison, Json& json) {
   json["trackers"] = Json::object();
   for (const TrackerSummary& summary : comparison.trackers) json["trackers"][summary.name] = tracker_json(comparison, summary);
   json["bounds"] = Json::object();
@@ -174,7 +167,27 @@ std::string comparison_json(const Comparison& comparison) {
     for (const PairedDifference& difference : pair.differences)
       entry[difference.quantity] = {{"mean", number(difference.mean)}, {"se", number(difference.se)}};
   }
-  return json.dump(2) + "\n";
+}
+
+}  // namespace
+
+std::string comparison_table(const Comparison& comparison) {
+  std::string text = fmt::format("{}: {} runs, seed {}\n\n", comparison.study, comparison.runs, comparison.seed);
+  if (comparison.trackers.empty()) return text;
+  if (comparison.sets.empty()) return text + tables(comparison);
+  for (const auto& [name, set] : comparison.sets) text += name + "\n" + tables(set) + "\n";
+  return text + "all sets together\n" + tables(comparison);
+}
+
+std::string comparison_json(const Comparison& comparison) {
+  Json json;
+  json["study"] = comparison.study;
+  json["seed"] = comparison.seed;
+  json["runs"] = comparison.runs;
+  json["version"] = TRUEBEARING_VERSION;
+  add_figures(comparison, json);
+  for (const auto& [name, set] : comparison.sets) add_figures(set, json["sets"][name]);
+  return json_text(json);
 }
 
 }  // namespace truebearing

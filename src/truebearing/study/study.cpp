@@ -39,18 +39,33 @@ std::vector<std::string> names_of(const std::vector<TrackerSpec>& trackers) {
 Study Study::load(const std::filesystem::path& path) {
   Study study;
   study.path_ = path;
-  study.read(read_toml_file(path));
+  toml::table table = read_toml_file(path);
+  if (TableReader reader(table, path.string()); reader.has("like")) {
+    const std::filesystem::path parent = reader.text("like");
+    if (parent.has_parent_path()) throw reader.error("like", "names a folder", "a study beside this one");
+    toml::table inherited = read_toml_file(path.parent_path() / parent);
+    if (inherited.contains("like")) throw reader.error("like", "names a study that is itself `like` another");
+    table = merged(inherited, table);
+  }
+  study.read(table);
   return study;
 }
 
 void Study::read(const toml::table& table) {
   TableReader reader(table, path_.string());
+  reader.node("like");
   name_ = reader.text("name");
   const toml::node* scenario = reader.node("scenario");
   if (scenario && scenario->is_table())
     scenario_ = read_scenario(reader.table("scenario"));
   else
     scenario_ = load_scenario(reader.resolve(reader.text("scenario")));
+  if (auto sets = reader.table_if_present("sets"))
+    for (const std::string& set : sets->keys()) {
+      sets_.emplace_back(set, load_scenario(sets->resolve(sets->text(set))));
+      if (sets_.back().second->truth_space() != scenario_->truth_space())
+        throw sets->error(set, "has another truth than the study's scenario");
+    }
   seed_ = static_cast<std::uint64_t>(reader.integer_or("seed", 1, 0, std::numeric_limits<std::int64_t>::max()));
   runs_ = static_cast<std::size_t>(reader.integer_or("runs", 1000, 1, 10000000));
   if (reader.has("parameters")) {
@@ -61,36 +76,43 @@ void Study::read(const toml::table& table) {
     tuning_runs_ = static_cast<std::size_t>(tuning->integer_or("runs", 300, 1, 1000000));
     tuning->finish();
   }
-
   read_trackers(reader.table("trackers"));
-
-  const std::vector<std::string> names = names_of(trackers_);
-  const auto known = [&](TableReader& where, const char* key, const std::string& tracker) {
-    if (std::find(names.begin(), names.end(), tracker) == names.end())
-      throw where.error(key, "names no tracker: \"" + tracker + "\"", suggestion(tracker, names));
-    return tracker;
-  };
-  if (auto scoring = reader.table_if_present("scoring")) {
-    scoring_.from_step = static_cast<int>(scoring->integer_or("from_step", 1, 1, 1000000));
-    if (auto thresholds = scoring->table_if_present("loss_thresholds")) {
-      for (const std::string& quantity : thresholds->keys()) {
-        if (scenario_->truth_space().quantity_index(quantity) < 0)
-          throw thresholds->error(quantity, "is no quantity of the scenario's truth");
-        scoring_.loss_thresholds.emplace_back(quantity, thresholds->number(quantity, kPositive));
-      }
-    }
-    if (scoring->has("pairs"))
-      for (const std::string& pair : scoring->texts("pairs")) {
-        const std::size_t dash = pair.find(" - ");
-        if (dash == std::string::npos) throw scoring->error("pairs", "holds \"" + pair + "\"", "\"a - b\" with names of trackers");
-        pairs_.emplace_back(known(*scoring, "pairs", pair.substr(0, dash)), known(*scoring, "pairs", pair.substr(dash + 3)));
-      }
-    if (scoring->has("bounds"))
-      for (const std::string& bound : scoring->texts("bounds")) bounds_.push_back(known(*scoring, "bounds", bound));
-    scoring->finish();
-  }
+  if (auto scoring = reader.table_if_present("scoring")) read_scoring(*scoring);
   reader.finish();
   check_trackers();
+}
+
+void Study::read_scoring(TableReader scoring) {
+  const std::vector<std::string> names = names_of(trackers_);
+  const auto known = [&](const char* key, const std::string& tracker) {
+    if (std::find(names.begin(), names.end(), tracker) == names.end())
+      throw scoring.error(key, "names no tracker: \"" + tracker + "\"", suggestion(tracker, names));
+    return tracker;
+  };
+  scoring_.from_step = static_cast<int>(scoring.integer_or("from_step", 1, 1, 1000000));
+  if (auto thresholds = scoring.table_if_present("loss_thresholds"))
+    for (const std::string& quantity : thresholds->keys()) {
+      if (scenario_->truth_space().quantity_index(quantity) < 0)
+        throw thresholds->error(quantity, "is no quantity of the scenario's truth");
+      scoring_.loss_thresholds.emplace_back(quantity, thresholds->number(quantity, kPositive));
+    }
+  if (scoring.has("pairs"))
+    for (const std::string& pair : scoring.texts("pairs")) {
+      const std::size_t dash = pair.find(" - ");
+      if (dash == std::string::npos)
+        throw scoring.error("pairs", "holds \"" + pair + "\"", "\"a - b\" with names of trackers");
+      pairs_.emplace_back(known("pairs", pair.substr(0, dash)), known("pairs", pair.substr(dash + 3)));
+    }
+  if (scoring.has("bounds"))
+    for (const std::string& bound : scoring.texts("bounds")) bounds_.push_back(known("bounds", bound));
+  scoring.finish();
+}
+
+std::vector<NamedScenario> Study::evaluation_scenarios() const {
+  if (sets_.empty()) return {{name_, scenario_.get()}};
+  std::vector<NamedScenario> scenarios;
+  for (const auto& [name, scenario] : sets_) scenarios.push_back({name, scenario.get()});
+  return scenarios;
 }
 
 void Study::read_trackers(TableReader table) {

@@ -36,7 +36,10 @@ class Study {
 
   const std::string& name() const { return name_; }
   const std::filesystem::path& path() const { return path_; }
+  /// What the trackers are tuned and trained on.
   const Scenario& scenario() const { return *scenario_; }
+  /// What they are compared on: the same, or the sets that the study names.
+  std::vector<NamedScenario> evaluation_scenarios() const;
   std::uint64_t seed() const { return seed_; }
   std::size_t runs() const { return runs_; }
   std::size_t tuning_runs() const { return tuning_runs_; }
@@ -76,12 +79,14 @@ class Study {
  private:
   Study() = default;
   void read(const toml::table& table);
+  void read_scoring(TableReader scoring);
   void read_trackers(TableReader table);
   void check_trackers();
 
   std::filesystem::path path_;
   std::string name_;
   std::unique_ptr<Scenario> scenario_;
+  std::vector<std::pair<std::string, std::unique_ptr<Scenario>>> sets_;
   std::uint64_t seed_ = 1;
   std::size_t runs_ = 1000;
   std::size_t tuning_runs_ = 300;

@@ -29,7 +29,7 @@ struct FuzzyTrainingData {
 
 struct TrainedFuzzyNetwork {
   FuzzyNetwork::Parameters parameters;
-  double cost = 0.0;           ///< mean over rows of the weighted squared normalised residuals, with any ridge term
+  double cost = 0.0;           ///< mean over rows of the weighted squared normalised residuals, ridge term included
   Eigen::VectorXd usage;       ///< (M), mean of phi over the training rows and their mirror images
   Eigen::MatrixXd local_mean;  ///< (M x p), phi-weighted mean of the labels, in their units
 };

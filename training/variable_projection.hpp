@@ -17,12 +17,11 @@ struct VariableProjectionOptions {
   double ridge = 1e-3;            ///< lambda: |w|^2 is weighted with lambda n/M on normalised outputs
   double input_clip = 4.0;        ///< standard deviations
   double width_floor = 0.3;       ///< standard deviations, from the first iteration to the last
-  Eigen::Index max_rows = 20000;  ///< of one iteration, mirror images included; each draws them afresh
+  Eigen::Index max_rows = 10000;  ///< of one iteration, mirror images included; each draws them afresh
   std::uint64_t seed = 1;
 };
 
-/// A function of data and options alone, to the bit. Throws InputError as validate() does, or for an option out of
-/// range.
+/// A function of data and options alone, to the bit. Throws InputError as validate() does and for options out of range.
 TrainedFuzzyNetwork train_variable_projection(const FuzzyTrainingData& data, const VariableProjectionOptions& options,
                                               const TrainingProgress& progress = {});
 

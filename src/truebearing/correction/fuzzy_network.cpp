@@ -1,5 +1,6 @@
 #include "truebearing/correction/fuzzy_network.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -61,8 +62,8 @@ void validate(const FuzzyNetwork::Parameters& p) {
 
 FuzzyNetwork::FuzzyNetwork(Parameters parameters) : parameters_(std::move(parameters)) {
   validate(parameters_);
-  inverse_widths_ = (std::sqrt(0.5) / parameters_.widths.array()).matrix().transpose();
-  scaled_centres_ = parameters_.centres.transpose().cwiseProduct(inverse_widths_);
+  inverse_widths_ = std::sqrt(0.5) / parameters_.widths.array();
+  scaled_centres_ = parameters_.centres.cwiseProduct(inverse_widths_);
   scaled_consequents_ = parameters_.output_scale.asDiagonal() * parameters_.consequents.transpose();
   // Each factor is finite; the products of extreme ones need not be, and 0 * inf is not a strength.
   if (!inverse_widths_.allFinite() || !scaled_centres_.allFinite() || !scaled_consequents_.allFinite()) {
@@ -71,27 +72,19 @@ FuzzyNetwork::FuzzyNetwork(Parameters parameters) : parameters_(std::move(parame
 }
 
 void FuzzyNetwork::strengths(const Inputs& input, Strengths& phi) const {
-  Inputs u(inputs());
-  for (Eigen::Index i = 0; i < u.size(); ++i) {
+  phi.setZero(rules());
+  for (Eigen::Index i = 0; i < inputs(); ++i) {
     const double standardised = (input[i] - parameters_.input_mean[i]) / parameters_.input_scale[i];
     if (std::isnan(standardised)) {
-      phi.setConstant(rules(), std::numeric_limits<double>::quiet_NaN());
+      phi.setConstant(std::numeric_limits<double>::quiet_NaN());
       return;
     }
-    u[i] = std::fmax(-parameters_.input_clip, std::fmin(standardised, parameters_.input_clip));
-  }
-  phi.resize(rules());
-  for (Eigen::Index j = 0; j < phi.size(); ++j) {
-    double exponent = 0.0;
-    for (Eigen::Index i = 0; i < u.size(); ++i) {
-      const double distance = u[i] * inverse_widths_(i, j) - scaled_centres_(i, j);
-      exponent -= distance * distance;
-    }
-    phi[j] = exponent;
+    const double u = std::clamp(standardised, -parameters_.input_clip, parameters_.input_clip);
+    phi.array() -= (u * inverse_widths_.col(i) - scaled_centres_.col(i)).array().square();
   }
   const double peak = phi.maxCoeff();
   phi = (phi.array() - peak).max(kLowestExponent).exp();
-  phi /= phi.sum();
+  phi *= 1.0 / phi.sum();
 }
 
 FuzzyNetwork::Outputs FuzzyNetwork::output(const Strengths& phi) const {

@@ -53,9 +53,9 @@ class FuzzyNetwork {
 
  private:
   Parameters parameters_;
-  // The exponents as they are evaluated, -((u - c) / (sqrt(2) s))^2, one column per rule: precomputed.
-  Eigen::MatrixXd scaled_centres_;      // (d x M), c / (sqrt(2) s)
-  Eigen::MatrixXd inverse_widths_;      // (d x M), 1 / (sqrt(2) s)
+  // The exponents as they are evaluated, -((u - c) / (sqrt(2) s))^2, one row per rule: precomputed.
+  Eigen::MatrixXd scaled_centres_;      // (M x d), c / (sqrt(2) s)
+  Eigen::MatrixXd inverse_widths_;      // (M x d), 1 / (sqrt(2) s)
   Eigen::MatrixXd scaled_consequents_;  // (p x M), in the units of the outputs
 };
 

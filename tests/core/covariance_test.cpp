@@ -37,7 +37,7 @@ TEST(Covariance, OneNegativeEigenvalueIsFound) {
     for (int trial = 0; trial < 200; ++trial) {
       const Eigen::MatrixXd A = random_matrix(n, n, stream);
       const Eigen::VectorXd direction = random_matrix(n, 1, stream).normalized();
-      const Eigen::MatrixXd P = A * A.transpose();
+      const Eigen::MatrixXd P = A * A.transpose() + 0.1 * Eigen::MatrixXd::Identity(n, n);
       // Taking more along a direction than P has there leaves x' P x < 0 for some x.
       const double most = 1.0 / direction.dot(P.ldlt().solve(direction));
       const Eigen::MatrixXd less = P - 0.999 * most * direction * direction.transpose();

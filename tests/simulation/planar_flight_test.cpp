@@ -113,10 +113,7 @@ TEST(PlanarFlight, LegsTurnsAndSidesAlternateAsDrawn) {
     for (const double rate : rates) turning.push_back(std::abs(rate) / 3.0);
   }
   EXPECT_NEAR(moments(lefts).mean, 0.5, mean_margin(0.5, lefts.size()));
-  // The first leg is cut at random, by 15 s of 100 on the mean, which the third cycle's turn begins to fill: hence more
-  // than 0.4.
-  EXPECT_GT(moments(turning).mean, 0.4);
-  EXPECT_LT(moments(turning).mean, 0.5);
+  EXPECT_NEAR(moments(turning).mean, 0.4, 1e-9);
 }
 
 TEST(PlanarFlight, FirstCourseIsAnyCourse) {

@@ -21,8 +21,12 @@ using ::testing::HasSubstr;
 using testing::mean_margin;
 using testing::moments;
 
+std::filesystem::path path_of(const std::string& name) {
+  return std::filesystem::path(TRUEBEARING_SOURCE_DIR) / "data/scenarios" / (name + ".toml");
+}
+
 std::unique_ptr<Scenario> load(const std::string& name) {
-  return load_scenario(std::filesystem::path(TRUEBEARING_SOURCE_DIR) / "data/scenarios" / (name + ".toml"));
+  return load_scenario(path_of(name));
 }
 
 std::string error_of(const std::string& text) {
@@ -97,28 +101,37 @@ TEST(Scenario, ShiftOfSpeedIsToSixHundredEitherWay) {
   EXPECT_NEAR(std::abs(shifted->simulate({}).truth[0].x[0](1)), 600.0, 5.0 * std::sqrt(0.4));
 }
 
-TEST(Scenario, FlightHasSpeedsRangesAndKinksOfTheStudy) {
-  const std::unique_ptr<Scenario> flight = load("radar_1d_flight");
-  int straight = 0, inner = 0, near = 0;
-  constexpr int kRuns = 300;
-  for (std::uint64_t run = 0; run < kRuns; ++run) {
+TEST(Scenario, FlightHasSpeedsAndKinksOfTheStudy) {
+  // In the plane, where samples between knots lie on a line exactly.
+  toml::table table = read_toml_file(path_of("radar_1d_flight"));
+  table.insert_or_assign("output", "plane");
+  const std::unique_ptr<Scenario> flight = read_scenario(TableReader(table, "radar_1d_flight.toml"));
+  std::vector<double> interpolated, speeds_mps;
+  for (std::uint64_t run = 0; run < 300; ++run) {
     const std::vector<BoundedVector> x = flight->simulate({1, Role::training, run}).truth[0].x;
-    double closest_m = 1e9;
-    for (std::size_t k = 0; k < x.size(); ++k) {
-      EXPECT_LE(std::abs(x[k](1)), 160.0);
-      closest_m = std::min(closest_m, x[k](0));
-      if (k == 0 || k + 1 == x.size()) continue;
-      ++inner;
-      straight += std::abs(x[k + 1](0) - 2.0 * x[k](0) + x[k - 1](0)) < 5.0;
-    }
-    near += closest_m < 1500.0;
+    speeds_mps.push_back(x[0].tail(2).norm());
+    for (std::size_t k = 1; k + 1 < x.size(); ++k)
+      interpolated.push_back((x[k + 1] - 2.0 * x[k] + x[k - 1]).head(2).norm() < 1e-6);
   }
-  // At least the overflights (30 % of them) and the 5 % of the others that are drawn below 1500 m come near.
-  EXPECT_GT(near, kRuns * 0.3);
-  EXPECT_LT(near, kRuns * 0.8);
-  // Samples between knots, 1 - 1/1.72 of all, are nearly straight in range too; the kinks are not.
-  EXPECT_GT(straight, inner * 0.3);
-  EXPECT_LT(straight, inner * 0.7);
+  EXPECT_NEAR(moments(speeds_mps).mean, 105.0, mean_margin(110.0 / std::sqrt(12.0), speeds_mps.size()));
+  EXPECT_GE(*std::min_element(speeds_mps.begin(), speeds_mps.end()), 50.0);
+  EXPECT_LE(*std::max_element(speeds_mps.begin(), speeds_mps.end()), 160.0);
+  // Knots come every 1.72 samples on the mean, more evenly than independent draws would.
+  constexpr double kShare = 1.0 - 1.0 / 1.72;
+  EXPECT_NEAR(moments(interpolated).mean, kShare, mean_margin(std::sqrt(kShare * (1.0 - kShare)), interpolated.size()));
+}
+
+TEST(Scenario, FlightComesNearTheSiteAsOftenAsTheStudySays) {
+  const auto comes_near = [](const Recording& recording) {
+    double closest_m = 1e9;
+    for (const BoundedVector& x : recording.truth[0].x) closest_m = std::min(closest_m, x(0));
+    return closest_m < 1500.0 ? 1.0 : 0.0;
+  };
+  // Drawn below 1500 m: all overflights and 1500/20000 of the others. Turning back brings some more near.
+  const double drawn = 0.3 + 0.7 * 0.075;
+  const double near = over_runs(*load("radar_1d_flight"), 500, comes_near).mean;
+  EXPECT_GT(near, drawn - mean_margin(std::sqrt(drawn * (1.0 - drawn)), 500));
+  EXPECT_LT(near, 2.0 * drawn);
 }
 
 TEST(Scenario, UnknownKindListsTheValidOnes) {

@@ -12,6 +12,7 @@
 #include <iostream>
 #include <limits>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include "truebearing/core/suggestion.hpp"
@@ -39,7 +40,8 @@ std::string as_shown(std::string_view text) {
 
 std::unique_ptr<std::istream> open_file(const std::filesystem::path& path) {
   if (path == "-") return nullptr;
-  if (std::filesystem::is_directory(path)) throw InputError(path.string(), "is a directory", "a CSV file");
+  std::error_code unknown;
+  if (std::filesystem::is_directory(path, unknown)) throw InputError(path.string(), "is a directory", "a CSV file");
   auto file = std::make_unique<std::ifstream>(path, std::ios::binary);
   if (!*file) throw InputError(path.string(), fmt::format("cannot be opened: {}", std::strerror(errno)));
   return file;

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <system_error>
 #include <utility>
 
 #include "truebearing/core/error.hpp"
@@ -88,7 +89,8 @@ std::filesystem::path replaceable_target(const std::filesystem::path& path) {
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) return path;
   if (!std::filesystem::is_regular_file(status)) throw InputError(path.string(), "is not a regular file");
-  return std::filesystem::canonical(path);
+  const std::filesystem::path target = std::filesystem::canonical(path, error);
+  return error ? path : target;
 }
 
 }  // namespace

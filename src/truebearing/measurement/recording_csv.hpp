@@ -1,7 +1,6 @@
 // The measurement log: CSV with `time_s`, measured columns with their units in the name (`position_m`, `bearing_deg`),
 // and optionally their standard deviations (`position_sigma_m`), own-ship columns (`sensor_east_m`, `sensor_north_m`,
-// and `sensor_east_mps`, `sensor_north_mps`) and the truth (`truth_<component>`). Angles in degrees become radians
-// inside.
+// and `sensor_east_mps`, `sensor_north_mps`) and the truth (`truth_<component>`). Degrees become radians.
 //
 // An empty, NaN or infinite cell makes the measurement missing. A row identical to the one before is dropped. Both are
 // counted. A truth that gives positions only is completed by velocity_truth().

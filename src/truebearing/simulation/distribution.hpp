@@ -1,5 +1,6 @@
-// A number in a scenario: a value, or a distribution that each run draws from. In TOML: 200.0, { uniform = [-400, 400]
-// }, { normal = [0, 1000] } (mean, standard deviation), { log_uniform = [0.25, 4] } or { choice = [-600, 600] }.
+// A number in a scenario: a value, or a distribution that each run draws from. In TOML: 200.0 or one of
+// { uniform = [low, high] }, { normal = [mean, standard deviation] }, { log_uniform = [low, high] },
+// { choice = [a, b, ...] }.
 #pragma once
 
 #include <string>
@@ -15,7 +16,7 @@ class Distribution {
   enum class Kind { fixed, uniform, normal, log_uniform, choice };
 
   /// A number that is always the same.
-  Distribution(double value) : Distribution(Kind::fixed, {value}) {}  // NOLINT: a value is a distribution
+  Distribution(double value) : Distribution(Kind::fixed, {value}) {}
   /// `parameters` as in TOML. Throws InputError where they make no distribution.
   Distribution(Kind kind, std::vector<double> parameters);
 

@@ -1,6 +1,5 @@
 // A flight in the East-North plane at constant speed: straight legs and turns in alternation, the turn rate rising and
-// falling linearly at both ends of a turn (roll-in). Position and velocity are exact arcs over sub-steps of at most .1
-// s.
+// falling linearly at both ends of a turn (roll-in). Positions follow exact arcs over sub-steps of at most .1 s.
 #pragma once
 
 #include <Eigen/Core>

@@ -56,8 +56,8 @@ void bfl(benchmark::State& state) {
       benchmark::DoNotOptimize(position_m);
     }
   }
-  state.counters["per_step"] = benchmark::Counter(static_cast<double>(kSteps), benchmark::Counter::kIsIterationInvariantRate |
-                                                                                 benchmark::Counter::kInvert);
+  state.counters["per_step"] = benchmark::Counter(
+      static_cast<double>(kSteps), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 BENCHMARK_TEMPLATE(bfl, 1)->Name("bfl_2_1");
 BENCHMARK_TEMPLATE(bfl, 2)->Name("bfl_4_2");

@@ -22,7 +22,8 @@ void opencv(benchmark::State& state) {
     for (int i = 0; i < Dim; ++i) {
       filter.transitionMatrix.at<double>(i, Dim + i) = kPeriod_s;
       filter.processNoiseCov.at<double>(i, i) = kDensity_m2ps3 / 3;
-      filter.processNoiseCov.at<double>(i, Dim + i) = filter.processNoiseCov.at<double>(Dim + i, i) = kDensity_m2ps3 / 2;
+      filter.processNoiseCov.at<double>(i, Dim + i) = filter.processNoiseCov.at<double>(Dim + i, i) =
+          kDensity_m2ps3 / 2;
       filter.processNoiseCov.at<double>(Dim + i, Dim + i) = kDensity_m2ps3;
     }
     cv::Mat z(Dim, 1, CV_64F);
@@ -35,8 +36,8 @@ void opencv(benchmark::State& state) {
       benchmark::DoNotOptimize(position_m);
     }
   }
-  state.counters["per_step"] = benchmark::Counter(static_cast<double>(kSteps), benchmark::Counter::kIsIterationInvariantRate |
-                                                                                 benchmark::Counter::kInvert);
+  state.counters["per_step"] = benchmark::Counter(
+      static_cast<double>(kSteps), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 BENCHMARK_TEMPLATE(opencv, 1)->Name("opencv_2_1");
 BENCHMARK_TEMPLATE(opencv, 2)->Name("opencv_4_2");

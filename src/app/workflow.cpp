@@ -55,7 +55,7 @@ ParametersFile tune_study(const Study& study, const WorkflowOptions& options) {
     parameters.trackers[spec.name] = tune_tracker(study, spec.name, tune_options, &report);
     if (!options.quiet)
       fmt::print(stderr, "tuned {}: RMSE times {:.4f} (geometric mean over the scored quantities), {} evaluations\n", spec.name,
-                 std::exp((report.cost_after - report.cost_before) / study.scenario().truth_space().quantities.size()),
+                 std::exp((report.cost_after - report.cost_before) / static_cast<double>(study.scenario().truth_space().quantities.size())),
                  report.evaluations);
   }
   return parameters;

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "truebearing/filter/factorization.hpp"
+#include "truebearing/filter/product.hpp"
 #include "truebearing/filter/update.hpp"
 
 namespace truebearing {
@@ -18,7 +19,7 @@ namespace detail {
 inline constexpr double kTrustedError = 1e-3;
 
 template <int N, typename Scalar>
-void mirror_lower(Eigen::Matrix<Scalar, N, N>& A) {
+EIGEN_ALWAYS_INLINE void mirror_lower(Eigen::Matrix<Scalar, N, N>& A) {
   for (int j = 1; j < N; ++j)
     for (int i = 0; i < j; ++i) A(i, j) = A(j, i);
 }
@@ -27,7 +28,7 @@ void mirror_lower(Eigen::Matrix<Scalar, N, N>& A) {
 struct CovarianceForm {
   /// P0 as the form carries it; NaN where it is not a covariance, so that every later step says `failed`.
   template <int N, typename Scalar>
-  static Eigen::Matrix<Scalar, N, N> from_covariance(Eigen::Matrix<Scalar, N, N> P) {
+  EIGEN_ALWAYS_INLINE static Eigen::Matrix<Scalar, N, N> from_covariance(Eigen::Matrix<Scalar, N, N> P) {
     mirror_lower<N, Scalar>(P);
     if (!is_positive_semidefinite<N, Scalar>(P)) P.setConstant(std::numeric_limits<Scalar>::quiet_NaN());
     return P;
@@ -40,29 +41,34 @@ struct CovarianceForm {
 
   template <int N, typename Scalar>
   EIGEN_ALWAYS_INLINE static bool predict(const Eigen::Matrix<Scalar, N, N>& F, const Eigen::Matrix<Scalar, N, N>& Q,
-                      Eigen::Matrix<Scalar, N, N>& P) {
-    Eigen::Matrix<Scalar, N, N> FP;
-    FP.noalias() = F * P;
-    P.noalias() = FP * F.transpose();
-    P += Q;
+                                          Eigen::Matrix<Scalar, N, N>& P) {
+    const Eigen::Matrix<Scalar, N, N> FP = product(F, P);
+    copy(Q, P);
+    add_product<1>(FP, transposed(F), P);
     mirror_lower<N, Scalar>(P);
     return is_positive_semidefinite<N, Scalar>(P);
   }
 
   /// S, K and NIS; PHt = P H' (n x m). False where R is not positive semi-definite, or where S has lost its digits:
-  /// S_ii is summed from terms of the size t_i = sum_j H_ij^2 P_jj + R_ii, so rounding leaves its pivots (the innovation
-  /// variances given the components before them) wrong by about t_i eps/2, and S^-1 by eps/2 t_i / pivot, relatively.
+  /// S_ii is summed from terms of the size t_i = sum_j H_ij^2 P_jj + R_ii, so rounding leaves its pivots (the
+  /// innovation variances given the components before them) wrong by about t_i eps/2, and S^-1 by eps/2 t_i / pivot,
+  /// relatively.
   template <int N, int M, typename Scalar>
   EIGEN_ALWAYS_INLINE static bool gain(const Eigen::Matrix<Scalar, N, N>& P, const Eigen::Matrix<Scalar, M, N>& H,
-                   const Eigen::Matrix<Scalar, M, M>& R, Eigen::Matrix<Scalar, N, M>& PHt, Update<N, M, Scalar>& update) {
+                                       const Eigen::Matrix<Scalar, M, M>& R, Eigen::Matrix<Scalar, N, M>& PHt,
+                                       Update<N, M, Scalar>& update) {
     constexpr Scalar kLeastPivot = std::numeric_limits<Scalar>::epsilon() / Scalar(2 * kTrustedError);
-    PHt.noalias() = P * H.transpose();
-    update.S.noalias() = H * PHt;
-    update.S += R;
+    PHt = product(P, transposed(H));
+    copy(R, update.S);
+    add_product<1>(H, PHt, update.S);
     mirror_lower<M, Scalar>(update.S);
-    const Eigen::Matrix<Scalar, M, 1> least =
-        kLeastPivot * (H.cwiseAbs2() * P.diagonal() + R.diagonal()).array() + std::numeric_limits<Scalar>::min();
-    const Ldlt<M, Scalar> factors(update.S, least, least);
+    Eigen::Matrix<Scalar, M, 1> least;
+    for (int i = 0; i < M; ++i) {
+      Scalar t = R(i, i);
+      for (int j = 0; j < N; ++j) t += H(i, j) * H(i, j) * P(j, j);
+      least(i) = kLeastPivot * t + std::numeric_limits<Scalar>::min();
+    }
+    const Ldlt<M, Scalar> factors(update.S, least);
     for (int i = 0; i < N; ++i) update.K.row(i) = factors.solve(PHt.row(i).transpose()).transpose();
     update.nis = update.nu.dot(factors.solve(update.nu));
     return factors.valid & is_positive_semidefinite<M, Scalar>(R);
@@ -75,29 +81,29 @@ struct CovarianceForm {
 struct Joseph : detail::CovarianceForm {
   template <int N, int M, typename Scalar>
   EIGEN_ALWAYS_INLINE static bool update(Eigen::Matrix<Scalar, N, N>& P, const Eigen::Matrix<Scalar, M, N>& H,
-                     const Eigen::Matrix<Scalar, M, M>& R, Update<N, M, Scalar>& update) {
+                                         const Eigen::Matrix<Scalar, M, M>& R, Update<N, M, Scalar>& update) {
     Eigen::Matrix<Scalar, N, M> PHt;
     const bool valid = gain(P, H, R, PHt, update);
-    // The product taken one factor at a time, A = (I - K H) P, then A - (A H' - K R) K': the same errors as with I - K H
-    // formed, for fewer multiplications.
-    P.noalias() -= update.K * PHt.transpose();
-    PHt.noalias() = P * H.transpose();
-    PHt.noalias() -= update.K * R;
-    P.noalias() -= PHt * update.K.transpose();
+    // The product taken one factor at a time, A = (I - K H) P, then A - (A H' - K R) K': the same errors as with I - K
+    // H formed, for fewer multiplications.
+    add_product<-1>(update.K, transposed(PHt), P);
+    PHt = product(P, transposed(H));
+    add_product<-1>(update.K, R, PHt);
+    add_product<-1>(PHt, transposed(update.K), P);
     detail::mirror_lower<N, Scalar>(P);
     return valid & is_positive_semidefinite<N, Scalar>(P);
   }
 };
 
-/// P - K S K', symmetrised. For comparison only: where a measurement is much better than the prediction, it subtracts nearly
-/// equal matrices, and says so only once P is no longer positive semi-definite.
+/// P - K S K', symmetrised. For comparison only: where a measurement is much better than the prediction, it subtracts
+/// nearly equal matrices, and says so only once P is no longer positive semi-definite.
 struct Conventional : detail::CovarianceForm {
   template <int N, int M, typename Scalar>
   EIGEN_ALWAYS_INLINE static bool update(Eigen::Matrix<Scalar, N, N>& P, const Eigen::Matrix<Scalar, M, N>& H,
-                     const Eigen::Matrix<Scalar, M, M>& R, Update<N, M, Scalar>& update) {
+                                         const Eigen::Matrix<Scalar, M, M>& R, Update<N, M, Scalar>& update) {
     Eigen::Matrix<Scalar, N, M> PHt;
     const bool valid = gain(P, H, R, PHt, update);
-    P.noalias() -= update.K * PHt.transpose();
+    add_product<-1>(update.K, transposed(PHt), P);
     P = (0.5 * (P + P.transpose())).eval();
     return valid & is_positive_semidefinite<N, Scalar>(P);
   }

@@ -1,6 +1,6 @@
-// The three small factorizations the filters stand on, for fixed sizes, without heap and branch-free: A = L D L' with its
-// solve, the square root of a positive semi-definite matrix, and orthogonal triangularization (Golub and Van Loan 2013,
-// sections 4.1 and 5.1). Sizes are so small that Eigen's general solvers spend most of their time on set-up.
+// The three small factorizations the filters stand on, for fixed sizes, without heap and branch-free: A = L D L' with
+// its solve, the square root of a positive semi-definite matrix, and orthogonal triangularization (Golub and Van Loan
+// 2013, sections 4.1 and 5.1). Sizes are so small that Eigen's general solvers spend most of their time on set-up.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,24 +9,20 @@
 
 namespace truebearing {
 
-/// A = L D L' (n x n) by elimination; only the lower triangle of A is read. A pivot below `floor` is replaced by it:
-/// the factors are then those of A plus a diagonal, and `valid` tells the two uses apart.
+/// A = L D L' (n x n) of a positive definite matrix by elimination; only the lower triangle of A is read.
 template <int N, typename Scalar>
 struct Ldlt {
   using Matrix = Eigen::Matrix<Scalar, N, N>;
   using Vector = Eigen::Matrix<Scalar, N, 1>;
 
-  Matrix L;           ///< strictly lower part only
-  Vector D;
+  Matrix L;  ///< strictly lower part only
   Vector inverse_D;
   bool valid = true;  ///< all pivots were finite and at least `least`
 
-  EIGEN_ALWAYS_INLINE Ldlt(const Matrix& A, const Vector& floor, const Vector& least) : L(A) {
+  EIGEN_ALWAYS_INLINE Ldlt(const Matrix& A, const Vector& least) : L(A) {
     for (int k = 0; k < N; ++k) {
-      const Scalar pivot = L(k, k);
-      valid &= (pivot >= least(k)) & (pivot <= std::numeric_limits<Scalar>::max());
-      D(k) = pivot > floor(k) ? pivot : floor(k);
-      inverse_D(k) = 1 / D(k);
+      valid &= (L(k, k) >= least(k)) & (L(k, k) <= std::numeric_limits<Scalar>::max());
+      inverse_D(k) = 1 / L(k, k);
       for (int i = k + 1; i < N; ++i) {
         const Scalar factor = L(i, k) * inverse_D(k);
         for (int j = k + 1; j <= i; ++j) L(i, j) -= factor * L(j, k);
@@ -46,8 +42,8 @@ struct Ldlt {
   }
 };
 
-/// What rounding can leave of a pivot that should be zero: n eps of the variance, and something above zero for a variance
-/// of zero, which then allows no covariance.
+/// What rounding can leave of a pivot that should be zero: n eps of the variance, and something above zero for a
+/// variance of zero, which then allows no covariance.
 template <int N, typename Scalar>
 EIGEN_ALWAYS_INLINE Eigen::Matrix<Scalar, N, 1> semidefinite_slack(const Eigen::Matrix<Scalar, N, N>& A) {
   constexpr Scalar kTolerance = 8 * N * std::numeric_limits<Scalar>::epsilon();
@@ -56,49 +52,52 @@ EIGEN_ALWAYS_INLINE Eigen::Matrix<Scalar, N, 1> semidefinite_slack(const Eigen::
   return slack;
 }
 
-/// True where A is finite and its correlation matrix has no eigenvalue below some -n eps, which is as far as rounding can take
-/// one that was positive semi-definite. Elimination of one variable after the other; reads the lower triangle.
+/// True where A is finite and positive definite: elimination of one variable after the other; reads the lower triangle.
 template <int N, typename Scalar>
-EIGEN_ALWAYS_INLINE bool is_positive_semidefinite(const Eigen::Matrix<Scalar, N, N>& A,
-                                                  const Eigen::Matrix<Scalar, N, 1>& slack) {
-  bool valid = (A(0, 0) >= -slack(0)) & (A(0, 0) <= std::numeric_limits<Scalar>::max());
+EIGEN_ALWAYS_INLINE bool is_positive_definite(const Eigen::Matrix<Scalar, N, N>& A) {
+  bool valid = (A(0, 0) > 0) & (A(0, 0) <= std::numeric_limits<Scalar>::max());
   if constexpr (N > 1) {
-    const Scalar inverse_pivot = 1 / (A(0, 0) > slack(0) ? A(0, 0) : slack(0));
+    const Scalar inverse_pivot = 1 / A(0, 0);
     Eigen::Matrix<Scalar, N - 1, N - 1> schur;
-    Eigen::Matrix<Scalar, N - 1, 1> slack_left;
     for (int j = 1; j < N; ++j) {
       const Scalar factor = A(j, 0) * inverse_pivot;
-      slack_left(j - 1) = slack(j);
       for (int i = j; i < N; ++i) schur(i - 1, j - 1) = A(i, j) - A(i, 0) * factor;
     }
-    valid &= is_positive_semidefinite<N - 1, Scalar>(schur, slack_left);
+    valid &= is_positive_definite<N - 1, Scalar>(schur);
   }
   return valid;
 }
 
+/// True where A is finite and its correlation matrix has no eigenvalue below -8 n eps, which is about as far as
+/// rounding takes one that was positive semi-definite.
 template <int N, typename Scalar>
 EIGEN_ALWAYS_INLINE bool is_positive_semidefinite(const Eigen::Matrix<Scalar, N, N>& A) {
-  return is_positive_semidefinite<N, Scalar>(A, semidefinite_slack<N, Scalar>(A));
+  const Eigen::Matrix<Scalar, N, 1> slack = semidefinite_slack<N, Scalar>(A);
+  Eigen::Matrix<Scalar, N, N> lifted = A;
+  for (int i = 0; i < N; ++i) lifted(i, i) += slack(i);
+  return is_positive_definite<N, Scalar>(lifted);
 }
 
-/// Lower triangular L with L L' = A; NaN where A is not positive semi-definite.
+/// Lower triangular L with L L' = A, up to some n eps of the variances; NaN where A is not positive semi-definite.
 template <int N, typename Scalar>
 Eigen::Matrix<Scalar, N, N> semidefinite_root(const Eigen::Matrix<Scalar, N, N>& A) {
   const Eigen::Matrix<Scalar, N, 1> slack = semidefinite_slack<N, Scalar>(A);
-  const Ldlt<N, Scalar> factors(A, slack, -slack);
-  Eigen::Matrix<Scalar, N, N> L = Eigen::Matrix<Scalar, N, N>::Zero();
+  Eigen::Matrix<Scalar, N, N> L = A.template triangularView<Eigen::Lower>();
   for (int k = 0; k < N; ++k) {
-    // A variance of exactly zero keeps a root of exactly zero; its floor only served the division.
-    L(k, k) = A(k, k) == 0 ? Scalar(0) : std::sqrt(factors.D(k));
-    for (int i = k + 1; i < N; ++i) L(i, k) = factors.L(i, k) * L(k, k);
+    const Scalar root = std::sqrt(L(k, k) > slack(k) ? L(k, k) : slack(k));
+    for (int i = k + 1; i < N; ++i) L(i, k) /= root;
+    for (int i = k + 1; i < N; ++i)
+      for (int j = k + 1; j <= i; ++j) L(i, j) -= L(i, k) * L(j, k);
+    // A variance of zero keeps a root of zero: its slack only served the division.
+    L(k, k) = A(k, k) == 0 ? Scalar(0) : root;
   }
-  if (!factors.valid) L.setConstant(std::numeric_limits<Scalar>::quiet_NaN());
+  if (!is_positive_semidefinite<N, Scalar>(A)) L.setConstant(std::numeric_limits<Scalar>::quiet_NaN());
   return L;
 }
 
-/// W (rows x cols, cols >= rows) becomes W Theta = [0, U] with Theta orthogonal, U upper triangular, diagonal >= 0: row by
-/// row from the last, Givens rotations of the columns. Rotations, because they multiply where a Householder reflection
-/// subtracts: columns of very different size keep their digits (Bierman's example: 1e-15 against 1e-7).
+/// W (rows x cols, cols >= rows) becomes W Theta = [0, U] with Theta orthogonal, U upper triangular, diagonal >= 0: row
+/// by row from the last, Givens rotations of the columns. Rotations, because they multiply where a Householder
+/// reflection subtracts: columns of very different size keep their digits (Bierman's example: 1e-15 against 1e-7).
 template <int Rows, int Cols, typename Scalar>
 void triangularize(Eigen::Matrix<Scalar, Rows, Cols>& W) {
   static_assert(Cols >= Rows);

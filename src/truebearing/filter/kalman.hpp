@@ -9,6 +9,7 @@
 
 #include "truebearing/core/status.hpp"
 #include "truebearing/filter/covariance_form.hpp"
+#include "truebearing/filter/product.hpp"
 #include "truebearing/filter/square_root.hpp"
 #include "truebearing/filter/update.hpp"
 #include "truebearing/measurement/measurement_model.hpp"
@@ -29,30 +30,32 @@ class KalmanFilter {
   KalmanFilter(const State& x0, const Covariance& P0)
       : x_(x0), carried_(Form::template from_covariance<N, Scalar>(P0)) {}
 
-  /// Crosses dt_s seconds. `failed` leaves x and P as they were: a result that is not finite, a P or Q that is not positive
-  /// semi-definite.
+  /// Crosses dt_s seconds. `failed` leaves x and P as they were: a result that is not finite, a P or Q that is not
+  /// positive semi-definite.
   template <LinearMotionModel Motion>
   EIGEN_ALWAYS_INLINE StepStatus predict(const Motion& motion, Scalar dt_s) {
     static_assert(Motion::kStates == N && std::is_same_v<typename Motion::Scalar, Scalar>);
     const Covariance F = motion.F(dt_s);
-    const State x = F * x_;
+    const State x = product(F, x_);
     Covariance carried = carried_;
     const bool valid = Form::template predict<N, Scalar>(F, motion.Q(dt_s), carried);
     return commit(valid, x, carried);
   }
 
-  /// Takes one measurement z (m). `failed` leaves x and P as they were: z, R or the result not finite, R, S or P not positive
-  /// (semi-)definite, or S so ill-conditioned that the result would not be worth having.
+  /// Takes one measurement z (m). `failed` leaves x and P as they were: z, R or the result not finite, R, S or P not
+  /// positive (semi-)definite, or S so ill-conditioned that the result would not be worth having.
   template <MeasurementModel Model>
-  EIGEN_ALWAYS_INLINE Update<N, Model::kMeasurements, Scalar> update(const Model& model,
-                                                 const Eigen::Matrix<Scalar, Model::kMeasurements, 1>& z) {
+  EIGEN_ALWAYS_INLINE Update<N, Model::kMeasurements, Scalar> update(
+      const Model& model, const Eigen::Matrix<Scalar, Model::kMeasurements, 1>& z) {
     static_assert(Model::kStates == N && std::is_same_v<typename Model::Scalar, Scalar>);
     constexpr int M = Model::kMeasurements;
     Update<N, M, Scalar> update;
     update.nu = model.residual(z, model.h(x_));
     Covariance carried = carried_;
     const bool valid = Form::template update<N, M, Scalar>(carried, model.H(x_), model.R(), update);
-    const State x = x_ + update.K * update.nu;
+    State x;
+    copy(x_, x);
+    add_product<1>(update.K, update.nu, x);
     update.status = commit(valid, x, carried);
     return update;
   }
@@ -63,11 +66,10 @@ class KalmanFilter {
 
  private:
   EIGEN_ALWAYS_INLINE StepStatus commit(bool valid, const State& x, const Covariance& carried) {
-    // 0 * x is 0 for finite numbers only: one comparison for all components.
-    valid &= (x * Scalar(0)).sum() == 0;
+    for (int i = 0; i < N; ++i) valid &= x(i) - x(i) == 0;  // of finite numbers only
     if (!valid) return StepStatus::failed;
-    x_ = x;
-    carried_ = carried;
+    copy(x, x_);
+    copy(carried, carried_);
     return StepStatus::ok;
   }
 

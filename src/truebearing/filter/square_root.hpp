@@ -1,9 +1,10 @@
-// The square-root covariance filter (SRCF) in array form, as a policy of KalmanFilter: carries the upper triangular U (n x n),
-// P = U U', which reaches twice as many digits down as P does. Theta is orthogonal, found by triangularization:
+// The square-root covariance filter (SRCF) in array form, as a policy of KalmanFilter: carries the upper triangular U
+// (n x n), P = U U', which reaches twice as many digits down as P does. Theta is orthogonal, found by
+// triangularization:
 //     predict  [Q^1/2, F U] Theta = [0, U]
 //     update   [U, 0; H U, R^1/2] Theta = [U, K S^1/2; 0, S^1/2]
-// Kailath, Sayed and Hassibi 2000, section 12.3, with the measurement last and upper triangles (Bierman's) for lower ones:
-// his example loses half its digits in the rounding of H L.
+// Kailath, Sayed and Hassibi 2000, section 12.3, with the measurement last and upper triangles (Bierman's) for lower
+// ones: his example loses half its digits in the rounding of H L.
 #pragma once
 
 #include <Eigen/Core>
@@ -40,8 +41,9 @@ struct SquareRoot {
     return is_finite<N, Scalar>(U);
   }
 
-  /// False where R is not positive semi-definite, or where S^1/2 has lost its digits: its row i is rotated from terms of the
-  /// size t_i^1/2, t_i = sum_j H_ij^2 P_jj + R_ii, so rounding leaves a pivot wrong by up to eps/2 t_i^1/2 / pivot, relatively.
+  /// False where R is not positive semi-definite, or where S^1/2 has lost its digits: its row i is rotated from terms
+  /// of the size t_i^1/2, t_i = sum_j H_ij^2 P_jj + R_ii, so rounding leaves a pivot wrong by up to eps/2 t_i^1/2 /
+  /// pivot, relatively.
   template <int N, int M, typename Scalar>
   static bool update(Eigen::Matrix<Scalar, N, N>& U, const Eigen::Matrix<Scalar, M, N>& H,
                      const Eigen::Matrix<Scalar, M, M>& R, Update<N, M, Scalar>& update) {

@@ -1,5 +1,5 @@
-// Ground range from a site to a state [east, north, v_east, v_north] in m and m/s: z = |position - site| (m = 1, n = 4).
-// H = [u', 0] with u the unit vector from the site to the target.
+// Ground range from a site to a state [east, north, v_east, v_north] in m and m/s: z = |position - site| (m = 1, n =
+// 4). H = [u', 0] with u the unit vector from the site to the target.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,5 +1,6 @@
-// Process noises of kinematic models, as policies: Q (2 Dim x 2 Dim) gathered over dt for a state [positions, velocities],
-// independent in each direction. Bar-Shalom, Li and Kirubarajan 2001, section 6.2 (continuous) and 6.3 (discrete).
+// Process noises of kinematic models, as policies: Q (2 Dim x 2 Dim) gathered over dt for a state [positions,
+// velocities], independent in each direction. Bar-Shalom, Li and Kirubarajan 2001, section 6.2 (continuous) and 6.3
+// (discrete).
 #pragma once
 
 #include <Eigen/Core>
@@ -49,7 +50,8 @@ struct DiscreteWhiteNoise {
 };
 
 /// A published matrix that is added once per step of period_s. It belongs to that period; at another dt it is scaled by
-/// dt / period_s, which keeps the variance added per second but not the correlation that crossing several steps builds up.
+/// dt / period_s, which keeps the variance added per second but not the correlation that crossing several steps builds
+/// up.
 template <int States>
 struct FixedNoise {
   Eigen::Matrix<double, States, States> Q_per_step;  ///< symmetric positive semi-definite, in the units of the state

@@ -1,0 +1,37 @@
+// A linear measurement model and a linear motion model of any given matrices, for tests.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace truebearing {
+
+template <int N, int M, typename ScalarType = double>
+struct LinearMeasurement {
+  using Scalar = ScalarType;
+  static constexpr int kStates = N;
+  static constexpr int kMeasurements = M;
+  using Vector = Eigen::Matrix<Scalar, M, 1>;
+  using State = Eigen::Matrix<Scalar, N, 1>;
+
+  Eigen::Matrix<Scalar, M, N> jacobian;
+  Eigen::Matrix<Scalar, M, M> noise;
+
+  Vector h(const State& x) const { return jacobian * x; }
+  Eigen::Matrix<Scalar, M, N> H(const State&) const { return jacobian; }
+  Eigen::Matrix<Scalar, M, M> R() const { return noise; }
+  Vector residual(const Vector& z, const Vector& z_pred) const { return z - z_pred; }
+};
+
+template <int N>
+struct LinearMotion {
+  using Scalar = double;
+  static constexpr int kStates = N;
+
+  Eigen::Matrix<double, N, N> transition;
+  Eigen::Matrix<double, N, N> noise;
+
+  Eigen::Matrix<double, N, N> F(double) const { return transition; }
+  Eigen::Matrix<double, N, N> Q(double) const { return noise; }
+};
+
+}  // namespace truebearing

@@ -23,7 +23,9 @@ class RowMaker {
         from_step_(correction.training.from_step),
         base_(ensemble_.index(correction.base)),
         source_(ensemble_.index(correction.covariance_of)),
-        extractor_(correction.features, ensemble_.tracker(base_).space(), ensemble_.tracker(base_).blocks()) {
+        extractor_(correction.features, ensemble_.tracker(base_).space(), [&](const std::string& name) {
+          return ensemble_.tracker(name.empty() ? base_ : ensemble_.index(name)).blocks();
+        }) {
     for (const std::string& name : extractor_.companions()) companions_.push_back(ensemble_.index(name));
     companion_records_.resize(companions_.size());
   }

@@ -25,7 +25,9 @@ Correction::Correction(std::shared_ptr<const CorrectionModel> model, const Ensem
       base_(member(ensemble, model_->base, *model_->space)),
       reference_(member(ensemble, model_->reference, *model_->space)),
       source_(member(ensemble, model_->covariance_of, *model_->space)),
-      prototype_(model_->features, *model_->space, ensemble.tracker(base_).blocks()) {
+      prototype_(model_->features, *model_->space, [&](const std::string& name) {
+        return ensemble.tracker(name.empty() ? base_ : member(ensemble, name, *model_->space)).blocks();
+      }) {
   model_->validate();
   for (const std::string& name : prototype_.companions()) companions_.push_back(member(ensemble, name, *model_->space));
   companion_records_.resize(companions_.size());

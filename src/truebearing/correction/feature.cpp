@@ -22,19 +22,29 @@ struct Kind {
 };
 
 // One line per kind: everything the house knows of it besides its formula, which is in feature_extractor.cpp.
+constexpr auto kOptional = FeatureNeeds::Companion::optional;
+constexpr auto kRequired = FeatureNeeds::Companion::required;
+
+// One line per kind: everything the house knows of it besides its formula, which is in feature_extractor.cpp.
 constexpr std::array<Kind, 9> kKinds{{
     {FeatureKind::log_step, "log_step", +1, {.blocks = kNothing}},
     {FeatureKind::gain, "gain", +1, {.component = true, .blocks = kGain}},
     {FeatureKind::residual, "residual", -1, {.component = true, .blocks = kInnovation}},
     {FeatureKind::prediction_difference, "prediction_difference", -1, {.component = true, .blocks = kPrediction}},
-    {FeatureKind::innovation, "innovation", -1, {.blocks = kInnovation}},
-    {FeatureKind::innovation_average, "innovation_average", -1, {.alpha = true, .blocks = kInnovation}},
-    {FeatureKind::log_nis_average, "log_nis_average", +1, {.alpha = true, .offset = true, .blocks = kInnovation}},
-    {FeatureKind::log_mean_nis, "log_mean_nis", +1, {.offset = true, .blocks = kInnovation}},
+    {FeatureKind::innovation, "innovation", -1, {.companion = kOptional, .blocks = kInnovation}},
+    {FeatureKind::innovation_average,
+     "innovation_average",
+     -1,
+     {.companion = kOptional, .alpha = true, .blocks = kInnovation}},
+    {FeatureKind::log_nis_average,
+     "log_nis_average",
+     +1,
+     {.companion = kOptional, .alpha = true, .offset = true, .blocks = kInnovation}},
+    {FeatureKind::log_mean_nis, "log_mean_nis", +1, {.companion = kOptional, .offset = true, .blocks = kInnovation}},
     {FeatureKind::companion_difference,
      "companion_difference",
      -1,
-     {.component = true, .companion = true, .scale = true, .blocks = kNothing}},
+     {.component = true, .companion = kRequired, .scale = true, .blocks = kNothing}},
 }};
 
 const Kind& entry(FeatureKind kind) { return kKinds[static_cast<std::size_t>(kind)]; }
@@ -63,17 +73,17 @@ FeatureNeeds needs_of(FeatureKind kind) { return entry(kind).needs; }
 int mirror_parity(FeatureKind kind) { return entry(kind).parity; }
 
 std::string describe(const FeatureSpec& feature) {
+  const std::string of = feature.companion.empty() ? "" : " of " + feature.companion;
   switch (feature.kind) {
     case FeatureKind::log_step: return "ln step";
     case FeatureKind::gain: return "gain in " + feature.component;
     case FeatureKind::residual: return "residual in " + feature.component;
     case FeatureKind::prediction_difference: return "prediction difference in " + feature.component;
-    case FeatureKind::innovation: return "innovation";
-    case FeatureKind::innovation_average: return fmt::format("innovation average {}", feature.alpha);
-    case FeatureKind::log_nis_average: return fmt::format("ln NIS average {}", feature.alpha);
-    case FeatureKind::log_mean_nis: return "ln mean NIS";
-    case FeatureKind::companion_difference:
-      return fmt::format("difference of {} in {}", feature.companion, feature.component);
+    case FeatureKind::innovation: return "innovation" + of;
+    case FeatureKind::innovation_average: return fmt::format("innovation average {}{}", feature.alpha, of);
+    case FeatureKind::log_nis_average: return fmt::format("ln NIS average {}{}", feature.alpha, of);
+    case FeatureKind::log_mean_nis: return "ln mean NIS" + of;
+    case FeatureKind::companion_difference: return fmt::format("difference{} in {}", of, feature.component);
   }
   return {};
 }

@@ -26,7 +26,8 @@ enum class FeatureKind {
 struct FeatureSpec {
   FeatureKind kind = FeatureKind::log_step;
   std::string component;  ///< of the state, where the kind has one
-  std::string companion;  ///< name of the tracker that the base is compared with
+  /// The tracker that the base is compared with; for features of the innovations, whose innovations: empty for the base's.
+  std::string companion;
   double alpha = 0.0;     ///< weight of the newest value in an average, (0, 1]
   double offset = 0.0;    ///< inside a logarithm, > 0
   double scale = 1.0;     ///< divisor, in the units of the component, > 0
@@ -42,12 +43,14 @@ FeatureKind feature_kind(const std::string& name);
 
 /// What a feature of this kind reads beside the state.
 struct FeatureNeeds {
+  enum class Companion { none, optional, required };
+
   bool component = false;
-  bool companion = false;
+  Companion companion = Companion::none;
   bool alpha = false;
   bool offset = false;
   bool scale = false;
-  RecordBlocks blocks;
+  RecordBlocks blocks;  ///< of the companion's records where one is named, else of the base's
 };
 FeatureNeeds needs_of(FeatureKind kind);
 

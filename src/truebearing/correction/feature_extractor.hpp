@@ -2,6 +2,7 @@
 // share this one class, so that both see the same numbers.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,9 +18,12 @@ class FeatureExtractor {
   using Features = FuzzyNetwork::Inputs;
 
   FeatureExtractor() = default;
+  /// The blocks in the records of a tracker, by its name; of the base for an empty name.
+  using BlocksOf = std::function<RecordBlocks(const std::string&)>;
+
   /// space: of the base's state. Throws InputError where a feature names a component that the space has not, a constant
-  /// is out of range, a block that it reads is not among the base's, or there are more features than a network takes.
-  FeatureExtractor(std::vector<FeatureSpec> features, const StateSpace& space, RecordBlocks base_blocks);
+  /// is out of range, a block that it reads is not in its tracker's records, or there are more features than a network takes.
+  FeatureExtractor(std::vector<FeatureSpec> features, const StateSpace& space, const BlocksOf& blocks_of);
 
   const std::vector<FeatureSpec>& features() const { return features_; }
   int size() const { return static_cast<int>(features_.size()); }
@@ -35,22 +39,21 @@ class FeatureExtractor {
   struct Term {
     FeatureKind kind;
     int component;
-    int companion;
+    int companion;  // -1: none
     double alpha, offset, scale;
-    double memory;  // the average, or the last value of what only a used measurement gives
+    double memory = 0.0;  // the average, or the last value of what only a used measurement gives
+    double used = 0.0;    // steps in which the measurement was used
   };
 
   void begin_track(int track);
-  static double value(Term& term, const StepRecord& base, std::span<const StepRecord* const> companions, double steps,
-                      double mean_nis);
+  static void remember(Term& term, const StepRecord& record);
+  static double value(const Term& term, const StepRecord& base, const StepRecord* companion, double steps);
 
   std::vector<FeatureSpec> features_;
   std::vector<std::string> companions_;
   std::vector<Term> terms_;
   int track_ = -1;
   double steps_ = 0.0;
-  double used_ = 0.0;     // steps in which the measurement was used
-  double nis_sum_ = 0.0;
 };
 
 }  // namespace truebearing

@@ -93,7 +93,9 @@ FeatureSpec read_feature(ObjectReader object) {
   }
   const FeatureNeeds needs = needs_of(feature.kind);
   if (needs.component) feature.component = object.text("component");
-  if (needs.companion) feature.companion = object.text("companion");
+  if (needs.companion == FeatureNeeds::Companion::required ||
+      (needs.companion == FeatureNeeds::Companion::optional && object.has("companion")))
+    feature.companion = object.text("companion");
   if (needs.alpha) feature.alpha = object.number("alpha");
   if (needs.offset) feature.offset = object.number("offset");
   if (needs.scale) feature.scale = object.number("scale");
@@ -105,7 +107,7 @@ OrderedJson feature_json(const FeatureSpec& feature) {
   const FeatureNeeds needs = needs_of(feature.kind);
   OrderedJson json{{"kind", std::string(to_string(feature.kind))}};
   if (needs.component) json["component"] = feature.component;
-  if (needs.companion) json["companion"] = feature.companion;
+  if (!feature.companion.empty()) json["companion"] = feature.companion;
   if (needs.alpha) json["alpha"] = feature.alpha;
   if (needs.offset) json["offset"] = feature.offset;
   if (needs.scale) json["scale"] = feature.scale;

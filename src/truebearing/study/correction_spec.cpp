@@ -12,7 +12,8 @@ FeatureSpec read_feature(TableReader& table) {
   feature.kind = feature_kind(table.choice("kind", feature_kind_names()));
   const FeatureNeeds needs = needs_of(feature.kind);
   if (needs.component) feature.component = table.text("component");
-  if (needs.companion) feature.companion = table.text("companion");
+  if (needs.companion == FeatureNeeds::Companion::required) feature.companion = table.text("companion");
+  if (needs.companion == FeatureNeeds::Companion::optional) feature.companion = table.text_or("companion", "");
   if (needs.alpha) feature.alpha = table.number("alpha", {0.0, 1.0, true});
   if (needs.offset) feature.offset = table.number("offset", kPositive);
   if (needs.scale) feature.scale = table.number("scale", kPositive);

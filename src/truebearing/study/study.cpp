@@ -141,8 +141,7 @@ void Study::read_trackers(TableReader table) {
 void Study::check_trackers() {
   for (const TrackerSpec& spec : trackers_) {
     if (!spec.correction) {
-      toml::table configuration = spec.configuration;
-      TableReader reader(configuration, path_.string(), "trackers." + spec.name);
+      TableReader reader(spec.configuration, path_.string(), "trackers." + spec.name);
       truebearing::make_tracker(spec.kind, reader);
       continue;
     }
@@ -150,13 +149,14 @@ void Study::check_trackers() {
       if (tracker(member).correction)
         throw InputError(path_.string() + ": trackers." + spec.name, "looks at \"" + member + "\", which is itself corrected",
                          "trackers of other kinds");
-    // Features that the base cannot give are refused here, not at the first step.
-    const TrackerSpec& base = tracker(spec.correction->base);
-    toml::table configuration = base.configuration;
-    TableReader reader(configuration, path_.string(), "trackers." + base.name);
-    const std::unique_ptr<Tracker> made = truebearing::make_tracker(base.kind, reader);
+    // Features that the records cannot give are refused here, not at the first step.
+    const auto made = [&](const std::string& name) {
+      const TrackerSpec& member = tracker(name.empty() ? spec.correction->base : name);
+      TableReader reader(member.configuration, path_.string(), "trackers." + member.name);
+      return truebearing::make_tracker(member.kind, reader);
+    };
     try {
-      FeatureExtractor(spec.correction->features, made->space(), made->blocks());
+      FeatureExtractor(spec.correction->features, made("")->space(), [&](const std::string& name) { return made(name)->blocks(); });
     } catch (const InputError& error) {
       throw InputError(path_.string() + ": trackers." + spec.name + ": " + error.where(), error.found(), error.valid());
     }

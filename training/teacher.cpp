@@ -12,7 +12,9 @@ namespace {
 struct Row {
   FeatureExtractor::Features features;
   BoundedVector label;
-  BoundedMatrix factor;
+  BoundedVector reference;
+  BoundedMatrix covariance_factor;
+  BoundedMatrix reference_factor;
 };
 
 // What one worker needs to make the rows of a run.
@@ -22,6 +24,7 @@ class RowMaker {
       : ensemble_(ensemble.clone()),
         from_step_(correction.training.from_step),
         base_(ensemble_.index(correction.base)),
+        reference_(ensemble_.index(correction.reference)),
         source_(ensemble_.index(correction.covariance_of)),
         extractor_(correction.features, ensemble_.tracker(base_).space(), [&](const std::string& name) {
           return ensemble_.tracker(name.empty() ? base_ : ensemble_.index(name)).blocks();
@@ -42,12 +45,17 @@ class RowMaker {
         companion_records_[c] = ensemble_.record(companions_[c], base.track);
       Row row;
       extractor_.extract(base, companion_records_, row.features);  // every step, for the averages
+      const StepRecord* reference = ensemble_.record(reference_, base.track);
       const StepRecord* source = ensemble_.record(source_, base.track);
-      if (static_cast<int>(step) + 1 < from_step_ || !source || base.status == StepStatus::failed) continue;
+      if (static_cast<int>(step) + 1 < from_step_ || !reference || !source || base.status == StepStatus::failed) continue;
       row.label = recording.truth.front().x[step] - base.x;
-      const Eigen::LLT<BoundedMatrix> cholesky(source->P);
-      if (!row.features.allFinite() || !row.label.allFinite() || cholesky.info() != Eigen::Success) continue;
-      row.factor = cholesky.matrixL();
+      row.reference = reference->x - base.x;
+      const Eigen::LLT<BoundedMatrix> covariance(source->P), reference_covariance(reference->P);
+      if (!row.features.allFinite() || !row.label.allFinite() || covariance.info() != Eigen::Success ||
+          reference_covariance.info() != Eigen::Success)
+        continue;
+      row.covariance_factor = covariance.matrixL();
+      row.reference_factor = reference_covariance.matrixL();
       rows.push_back(row);
     }
     return rows;
@@ -57,6 +65,7 @@ class RowMaker {
   Ensemble ensemble_;
   int from_step_;
   int base_;
+  int reference_;
   int source_;
   FeatureExtractor extractor_;
   std::vector<int> companions_;
@@ -64,6 +73,17 @@ class RowMaker {
 };
 
 }  // namespace
+
+Eigen::VectorXd mahalanobis_lengths(const Eigen::MatrixXd& errors, const Eigen::MatrixXd& factors) {
+  const Eigen::Index n = errors.cols();
+  Eigen::VectorXd lengths(errors.rows());
+  for (Eigen::Index row = 0; row < errors.rows(); ++row) {
+    const BoundedVector e = errors.row(row).transpose();
+    const BoundedMatrix factor = factors.row(row).reshaped(n, n);
+    lengths[row] = factor.triangularView<Eigen::Lower>().solve(e).norm();
+  }
+  return lengths;
+}
 
 TeacherSet collect_teacher_set(const Ensemble& ensemble, const CorrectionSpec& correction, const Scenario& scenario,
                                const TeacherOptions& options) {
@@ -87,13 +107,16 @@ TeacherSet collect_teacher_set(const Ensemble& ensemble, const CorrectionSpec& c
   if (total == 0) throw InputError("training", "no step of the training runs can be taught", "records, truth and finite features");
   const Eigen::Index d = static_cast<Eigen::Index>(correction.features.size());
   const Eigen::Index n = space.size();
-  TeacherSet set{correction.features, Eigen::MatrixXd(total, d), Eigen::MatrixXd(total, n), Eigen::MatrixXd(total, n * n)};
+  TeacherSet set{correction.features, Eigen::MatrixXd(total, d), Eigen::MatrixXd(total, n),
+                 Eigen::MatrixXd(total, n), Eigen::MatrixXd(total, n * n), Eigen::MatrixXd(total, n * n)};
   Eigen::Index next = 0;
   for (const std::vector<Row>& rows : by_run)
     for (const Row& row : rows) {
       set.X.row(next) = row.features.transpose();
       set.Y.row(next) = row.label.transpose();
-      set.covariance_factors.row(next) = row.factor.reshaped().transpose();
+      set.reference.row(next) = row.reference.transpose();
+      set.covariance_factors.row(next) = row.covariance_factor.reshaped().transpose();
+      set.reference_factors.row(next) = row.reference_factor.reshaped().transpose();
       ++next;
     }
   return set;

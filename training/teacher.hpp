@@ -17,11 +17,16 @@ namespace truebearing {
 /// One row per taught step of a run, run after run. d features, n state components.
 struct TeacherSet {
   std::vector<FeatureSpec> features;
-  Eigen::MatrixXd X;  ///< (N x d), features in their units
-  Eigen::MatrixXd Y;  ///< (N x n), truth - base estimate
-  /// Lower Cholesky factors of the covariance that the correction's own is made from, row by row (N x n n).
+  Eigen::MatrixXd X;          ///< (N x d), features in their units
+  Eigen::MatrixXd Y;          ///< (N x n), truth - base estimate
+  Eigen::MatrixXd reference;  ///< (N x n), reference estimate - base estimate
+  /// Lower Cholesky factors, one (n n) to a row: of the covariance that the correction's own is made from, and of the reference's.
   Eigen::MatrixXd covariance_factors;
+  Eigen::MatrixXd reference_factors;
 };
+
+/// |L^-1 e| per row, for errors e (N x n) and lower factors L (N x n n): their Mahalanobis lengths (N).
+Eigen::VectorXd mahalanobis_lengths(const Eigen::MatrixXd& errors, const Eigen::MatrixXd& factors);
 
 struct TeacherOptions {
   std::uint64_t seed = 1;

@@ -1,6 +1,5 @@
 #include "training/train_correction.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <chrono>
 #include <fmt/format.h>
@@ -45,10 +44,22 @@ double quantile_of(std::vector<double> values, double quantile) {
   return values[static_cast<std::size_t>(rank)];
 }
 
-// The box of the training data; symmetric in the features that a mirrored target mirrors, where mirror images were taught.
-BoxGate box_gate(const FuzzyTrainingData& data, const GateSpec& spec) {
+// What the network says on the rows of the teacher set (N x n).
+Eigen::MatrixXd outputs(const TeacherSet& teacher, const FuzzyNetwork& network) {
+  Eigen::MatrixXd Y(teacher.Y.rows(), teacher.Y.cols());
+  FuzzyNetwork::Strengths phi;
+  for (Eigen::Index row = 0; row < Y.rows(); ++row) {
+    network.strengths(FuzzyNetwork::Inputs(teacher.X.row(row).transpose()), phi);
+    Y.row(row) = network.output(phi).transpose();
+  }
+  return Y;
+}
+
+// The box of the training data; symmetric in the features that a mirrored target mirrors, where mirror images were taught. The reach has
+// no low side.
+BoxGate box_gate(const FuzzyTrainingData& data, const Eigen::VectorXd& reach_sigmas, const GateSpec& spec) {
   const Eigen::Index d = data.features.cols();
-  BoxGate gate{Eigen::VectorXd(d), Eigen::VectorXd(d), spec.edge_fraction};
+  BoxGate gate{Eigen::VectorXd(d), Eigen::VectorXd(d), spec.edge_fraction, 0.0, spec.reach_edge_fraction};
   for (Eigen::Index i = 0; i < d; ++i) {
     std::vector<double> values(data.features.col(i).begin(), data.features.col(i).end());
     if (data.mirrored() && data.parity[static_cast<std::size_t>(i)] < 0)
@@ -56,21 +67,8 @@ BoxGate box_gate(const FuzzyTrainingData& data, const GateSpec& spec) {
     gate.low[i] = quantile_of(values, spec.quantile);
     gate.high[i] = quantile_of(std::move(values), 1.0 - spec.quantile);
   }
+  gate.reach_sigmas = quantile_of({reach_sigmas.begin(), reach_sigmas.end()}, 1.0 - spec.reach_quantile);
   return gate;
-}
-
-// r = e' P^-1 e / n of the corrected estimate's errors on the teacher set, P that of `covariance_of`.
-Eigen::VectorXd normalised_squared_errors(const TeacherSet& teacher, const FuzzyNetwork& network) {
-  const Eigen::Index n = teacher.Y.cols();
-  Eigen::VectorXd r(teacher.X.rows());
-  FuzzyNetwork::Strengths phi;
-  for (Eigen::Index row = 0; row < r.size(); ++row) {
-    network.strengths(FuzzyNetwork::Inputs(teacher.X.row(row).transpose()), phi);
-    const Eigen::VectorXd e = teacher.Y.row(row).transpose() - network.output(phi);
-    const Eigen::MatrixXd factor = teacher.covariance_factors.row(row).reshaped(n, n);
-    r[row] = factor.triangularView<Eigen::Lower>().solve(e).squaredNorm() / static_cast<double>(n);
-  }
-  return r;
 }
 
 }  // namespace
@@ -93,9 +91,12 @@ CorrectionModel train_correction(const Study& study, const std::string& name, co
   for (const std::string& member : spec.members()) model.trackers[member] = study.configuration_line(member);
   model.features = spec.features;
   model.network = FuzzyNetwork(std::move(trained.parameters));
-  if (spec.gate) model.gate = box_gate(data, *spec.gate);
+  const Eigen::MatrixXd corrections = outputs(teacher, model.network);
+  if (spec.gate)
+    model.gate = box_gate(data, mahalanobis_lengths(corrections - teacher.reference, teacher.reference_factors), *spec.gate);
   model.kappa = spec.kappa;
-  model.inflation = covariance_inflation(model.network, teacher.X, normalised_squared_errors(teacher, model.network));
+  const Eigen::VectorXd lengths = mahalanobis_lengths(teacher.Y - corrections, teacher.covariance_factors);
+  model.inflation = covariance_inflation(model.network, teacher.X, lengths.cwiseAbs2() / model.space->size());
   model.usage = trained.usage;
   model.local_mean = trained.local_mean;
   model.provenance = {{"study", study.name()},

@@ -84,7 +84,7 @@ void Correction::correct_record(const StepRecord& base, const StepRecord& refere
 
   network.strengths(features, phi_);
   const Limited limited = limit_kappa(reference.P, base.x + network.output(phi_) - reference.x, model_->kappa);
-  const double g = model_->gate ? model_->gate->weight(features) : 1.0;
+  const double g = model_->gate ? model_->gate->weight(features, limited.wanted_sigmas) : 1.0;
   const double inflation = phi_.dot(model_->inflation);
 
   corrected.x += g * limited.d;

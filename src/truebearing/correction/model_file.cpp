@@ -162,7 +162,8 @@ CorrectionModel model_from(const Json& json, const std::string& name) {
 
   if (!file.at("gate").is_null()) {
     ObjectReader gate = file.object("gate");
-    model.gate = BoxGate{gate.vector("low", d), gate.vector("high", d), gate.number("edge_fraction")};
+    model.gate = BoxGate{gate.vector("low", d), gate.vector("high", d), gate.number("edge_fraction"),
+                         gate.number("reach_sigmas"), gate.number("reach_edge_fraction")};
     gate.finish();
   }
 
@@ -225,7 +226,9 @@ std::string model_text(const CorrectionModel& model) {
   if (model.gate)
     json["gate"] = {{"low", array_json(model.gate->low)},
                     {"high", array_json(model.gate->high)},
-                    {"edge_fraction", model.gate->edge_fraction}};
+                    {"edge_fraction", model.gate->edge_fraction},
+                    {"reach_sigmas", model.gate->reach_sigmas},
+                    {"reach_edge_fraction", model.gate->reach_edge_fraction}};
   json["rules"] = OrderedJson::array();
   for (Eigen::Index j = 0; j < parameters.centres.rows(); ++j)
     json["rules"].push_back({{"centre", array_json(parameters.centres.row(j))},

@@ -34,24 +34,40 @@ std::vector<std::string> names_of(const std::vector<TrackerSpec>& trackers) {
   return names;
 }
 
+// The trackers in the order of their file, which a merged table has lost.
+std::vector<std::string> tracker_order(const toml::table& study, const std::filesystem::path& path) {
+  TableReader reader(study, path.string());
+  const auto trackers = reader.table_if_present("trackers");
+  return trackers ? trackers->keys() : std::vector<std::string>{};
+}
+
+// `first`, then what only `second` has.
+std::vector<std::string> joined(std::vector<std::string> first, const std::vector<std::string>& second) {
+  for (const std::string& name : second)
+    if (std::find(first.begin(), first.end(), name) == first.end()) first.push_back(name);
+  return first;
+}
+
 }  // namespace
 
 Study Study::load(const std::filesystem::path& path) {
   Study study;
   study.path_ = path;
   toml::table table = read_toml_file(path);
+  std::vector<std::string> order = tracker_order(table, path);
   if (TableReader reader(table, path.string()); reader.has("like")) {
     const std::filesystem::path parent = reader.text("like");
     if (parent.has_parent_path()) throw reader.error("like", "names a folder", "a study beside this one");
     toml::table inherited = read_toml_file(path.parent_path() / parent);
     if (inherited.contains("like")) throw reader.error("like", "names a study that is itself `like` another");
+    order = joined(tracker_order(inherited, parent), order);
     table = merged(inherited, table);
   }
-  study.read(table);
+  study.read(table, order);
   return study;
 }
 
-void Study::read(const toml::table& table) {
+void Study::read(const toml::table& table, const std::vector<std::string>& order) {
   TableReader reader(table, path_.string());
   reader.node("like");
   name_ = reader.text("name");
@@ -76,7 +92,7 @@ void Study::read(const toml::table& table) {
     tuning_runs_ = static_cast<std::size_t>(tuning->integer_or("runs", 300, 1, 1000000));
     tuning->finish();
   }
-  read_trackers(reader.table("trackers"));
+  read_trackers(reader.table("trackers"), order);
   if (auto scoring = reader.table_if_present("scoring")) read_scoring(*scoring);
   reader.finish();
   check_trackers();
@@ -115,8 +131,8 @@ std::vector<NamedScenario> Study::evaluation_scenarios() const {
   return scenarios;
 }
 
-void Study::read_trackers(TableReader table) {
-  for (const std::string& name : table.keys()) {
+void Study::read_trackers(TableReader table, const std::vector<std::string>& order) {
+  for (const std::string& name : order) {
     TrackerSpec spec;
     spec.name = name;
     spec.configuration = resolved(table, name);

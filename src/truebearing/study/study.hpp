@@ -78,9 +78,9 @@ class Study {
 
  private:
   Study() = default;
-  void read(const toml::table& table);
+  void read(const toml::table& table, const std::vector<std::string>& order);
   void read_scoring(TableReader scoring);
-  void read_trackers(TableReader table);
+  void read_trackers(TableReader table, const std::vector<std::string>& order);
   void check_trackers();
 
   std::filesystem::path path_;

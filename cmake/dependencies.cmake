@@ -7,4 +7,4 @@ find_package(TBB REQUIRED)
 find_package(CLI11 2.1 REQUIRED)
 find_package(NLopt REQUIRED)
 find_package(Boost 1.74 REQUIRED)
-find_path(TRUEBEARING_RANDOM123 Random123/philox.h REQUIRED)
+find_path(TRUEBEARING_RANDOM123 Random123/philox.h REQUIRED)  # headers only, without a CMake package

@@ -44,7 +44,7 @@ struct CovarianceForm {
                                           Eigen::Matrix<Scalar, N, N>& P) {
     const Eigen::Matrix<Scalar, N, N> FP = product(F, P);
     copy(Q, P);
-    add_product<1>(FP, transposed(F), P);
+    add_product<1, Part::lower>(FP, transposed(F), P);
     mirror_lower<N, Scalar>(P);
     return is_positive_semidefinite<N, Scalar>(P);
   }
@@ -60,7 +60,7 @@ struct CovarianceForm {
     constexpr Scalar kLeastPivot = std::numeric_limits<Scalar>::epsilon() / Scalar(2 * kTrustedError);
     PHt = product(P, transposed(H));
     copy(R, update.S);
-    add_product<1>(H, PHt, update.S);
+    add_product<1, Part::lower>(H, PHt, update.S);
     mirror_lower<M, Scalar>(update.S);
     Eigen::Matrix<Scalar, M, 1> least;
     for (int i = 0; i < M; ++i) {
@@ -89,7 +89,7 @@ struct Joseph : detail::CovarianceForm {
     add_product<-1>(update.K, transposed(PHt), P);
     PHt = product(P, transposed(H));
     add_product<-1>(update.K, R, PHt);
-    add_product<-1>(PHt, transposed(update.K), P);
+    add_product<-1, Part::lower>(PHt, transposed(update.K), P);
     detail::mirror_lower<N, Scalar>(P);
     return valid & is_positive_semidefinite<N, Scalar>(P);
   }

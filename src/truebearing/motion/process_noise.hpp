@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <variant>
 
 namespace truebearing {
 
@@ -61,6 +62,17 @@ struct FixedNoise {
   Eigen::Matrix<Scalar, 2 * Dim, 2 * Dim> Q(Scalar dt_s) const {
     static_assert(States == 2 * Dim, "the matrix has the size of the state");
     return Q_per_step.template cast<Scalar>() * (dt_s / static_cast<Scalar>(period_s));
+  }
+};
+
+/// One of the three, chosen at run time: one type of filter for all of them, at the price of one branch a step.
+template <int States>
+struct AnyNoise {
+  std::variant<ContinuousWhiteNoise, DiscreteWhiteNoise, FixedNoise<States>> noise;
+
+  template <int Dim, typename Scalar>
+  Eigen::Matrix<Scalar, 2 * Dim, 2 * Dim> Q(Scalar dt_s) const {
+    return std::visit([&](const auto& chosen) { return chosen.template Q<Dim, Scalar>(dt_s); }, noise);
   }
 };
 

@@ -26,27 +26,27 @@ auto with_dimension(TableReader& table, const Use& use) {
   return use(std::integral_constant<int, 1>{});
 }
 
-template <int D, typename Use>
-auto with_motion(TableReader& tracker, const Use& use) {
+template <int D>
+AnyNoise<2 * D> read_noise(TableReader& table) {
+  const std::string kind = table.choice("noise", {"fixed", "discrete", "continuous"});
+  if (kind == "discrete") return {DiscreteWhiteNoise{table.number("sigma_a_mps2", kNonNegative)}};
+  if (kind == "continuous") return {ContinuousWhiteNoise{table.number("q_m2ps3", kNonNegative)}};
+  const std::vector<double> variance = table.numbers("variance", 2 * D, kNonNegative);
+  const double period_s = table.number("period_s", kPositive);
+  return {FixedNoise<2 * D>{Eigen::Map<const Eigen::Matrix<double, 2 * D, 1>>(variance.data()).asDiagonal(), period_s}};
+}
+
+// The noises behind one type, so that they do not multiply the number of filters that are compiled.
+template <int D>
+using Motion = ConstantVelocity<D, AnyNoise<2 * D>>;
+
+template <int D>
+Motion<D> read_motion(TableReader& tracker) {
   TableReader table = tracker.table("motion");
   table.choice("model", {"constant_velocity"});
-  const std::string noise = table.choice("noise", {"fixed", "discrete", "continuous"});
-  if (noise == "fixed") {
-    const std::vector<double> variance = table.numbers("variance", 2 * D, kNonNegative);
-    const double period_s = table.number("period_s", kPositive);
-    table.finish();
-    using Noise = FixedNoise<2 * D>;
-    Noise fixed{Eigen::Map<const Eigen::Matrix<double, 2 * D, 1>>(variance.data()).asDiagonal(), period_s};
-    return use(ConstantVelocity<D, Noise>{fixed});
-  }
-  if (noise == "discrete") {
-    const double sigma_a_mps2 = table.number("sigma_a_mps2", kNonNegative);
-    table.finish();
-    return use(ConstantVelocity<D, DiscreteWhiteNoise>{{sigma_a_mps2}});
-  }
-  const double q_m2ps3 = table.number("q_m2ps3", kNonNegative);
+  const Motion<D> motion{read_noise<D>(table)};
   table.finish();
-  return use(ConstantVelocity<D, ContinuousWhiteNoise>{{q_m2ps3}});
+  return motion;
 }
 
 // Type<N>::Filter names a filter: what `use` gets is a tag, since filters begin with a state.
@@ -122,56 +122,57 @@ const StateSpace& kinematic_space() {
 }
 
 // The hypotheses of a bank on the process noise: its covariance times `factor`.
+ContinuousWhiteNoise scaled(ContinuousWhiteNoise noise, double factor) { return {noise.q * factor}; }
+DiscreteWhiteNoise scaled(DiscreteWhiteNoise noise, double factor) { return {noise.sigma_a * std::sqrt(factor)}; }
 template <int N>
 FixedNoise<N> scaled(FixedNoise<N> noise, double factor) {
   noise.Q_per_step *= factor;
   return noise;
 }
-DiscreteWhiteNoise scaled(DiscreteWhiteNoise noise, double factor) { return {noise.sigma_a * std::sqrt(factor)}; }
-ContinuousWhiteNoise scaled(ContinuousWhiteNoise noise, double factor) { return {noise.q * factor}; }
+template <int N>
+AnyNoise<N> scaled(const AnyNoise<N>& any, double factor) {
+  return std::visit([&](const auto& noise) { return AnyNoise<N>{scaled(noise, factor)}; }, any.noise);
+}
 
 }  // namespace
 
 std::unique_ptr<Tracker> make_kalman_tracker(TableReader& table) {
   return with_dimension(table, [&](auto dimension) {
     constexpr int D = decltype(dimension)::value;
-    return with_motion<D>(table, [&](auto motion) {
-      return with_form(table, [&](auto form) -> std::unique_ptr<Tracker> {
-        using Filter = typename decltype(form)::template Filter<2 * D>;
-        return std::make_unique<FilterTracker<Filter, decltype(motion), PositionSensor<D>>>(
-            kinematic_space<D>(), motion, read_sensor<D>(table), read_start<D>(table), read_options(table, D));
-      });
+    const Motion<D> motion = read_motion<D>(table);
+    return with_form(table, [&](auto form) -> std::unique_ptr<Tracker> {
+      using Filter = typename decltype(form)::template Filter<2 * D>;
+      return std::make_unique<FilterTracker<Filter, Motion<D>, PositionSensor<D>>>(
+          kinematic_space<D>(), motion, read_sensor<D>(table), read_start<D>(table), read_options(table, D));
     });
   });
 }
 
 std::unique_ptr<Tracker> make_kalman_bank(TableReader& table) {
   constexpr int D = 1;
-  return with_motion<D>(table, [&](auto motion) -> std::unique_ptr<Tracker> {
-    using Motion = decltype(motion);
-    using Bank = FilterBank<KalmanFilter<2 * D>, Motion, PositionSensor<D>>;
-    const PositionSensor<D> sensor = read_sensor<D>(table);
-    TableReader start = table.table("start");
-    const PriorStart<2 * D> prior = read_prior<D>(start);
-    start.finish();
-    const std::vector<double> velocities = table.numbers("prior_velocities_mps");
-    const std::vector<double> variance_factors = table.numbers("measurement_variance_factors", -1, kPositive);
-    const std::vector<double> noise_factors = table.numbers("process_noise_factors", -1, kPositive);
+  using Bank = FilterBank<KalmanFilter<2 * D>, Motion<D>, PositionSensor<D>>;
+  const Motion<D> motion = read_motion<D>(table);
+  const PositionSensor<D> sensor = read_sensor<D>(table);
+  TableReader start = table.table("start");
+  const PriorStart<2 * D> prior = read_prior<D>(start);
+  start.finish();
+  const std::vector<double> velocities = table.numbers("prior_velocities_mps");
+  const std::vector<double> variance_factors = table.numbers("measurement_variance_factors", -1, kPositive);
+  const std::vector<double> noise_factors = table.numbers("process_noise_factors", -1, kPositive);
 
-    std::vector<typename Bank::Hypothesis> hypotheses;
-    for (const double velocity_mps : velocities)
-      for (const double variance_factor : variance_factors)
-        for (const double noise_factor : noise_factors) {
-          auto x = prior.x;
-          x[1] = velocity_mps;
-          PositionSensor<D> believed = sensor;
-          believed.sigma_factor *= std::sqrt(variance_factor);
-          hypotheses.push_back({KalmanFilter<2 * D>(x, prior.P), Motion{scaled(motion.noise, noise_factor)}, believed});
-        }
-    if (hypotheses.empty() || hypotheses.size() > 100000)
-      throw table.error("prior_velocities_mps", "makes a bank of " + std::to_string(hypotheses.size()), "1 to 100000 filters");
-    return std::make_unique<Bank>(line_space(), std::move(hypotheses), prior.time_s);
-  });
+  std::vector<Bank::Hypothesis> hypotheses;
+  for (const double velocity_mps : velocities)
+    for (const double variance_factor : variance_factors)
+      for (const double noise_factor : noise_factors) {
+        auto x = prior.x;
+        x[1] = velocity_mps;
+        PositionSensor<D> believed = sensor;
+        believed.sigma_factor *= std::sqrt(variance_factor);
+        hypotheses.push_back({KalmanFilter<2 * D>(x, prior.P), Motion<D>{scaled(motion.noise, noise_factor)}, believed});
+      }
+  if (hypotheses.empty() || hypotheses.size() > 100000)
+    throw table.error("prior_velocities_mps", "makes a bank of " + std::to_string(hypotheses.size()), "1 to 100000 filters");
+  return std::make_unique<Bank>(line_space(), std::move(hypotheses), prior.time_s);
 }
 
 std::unique_ptr<Tracker> make_raw_tracker(TableReader& table) {

@@ -113,15 +113,11 @@ class FilterTracker final : public Tracker {
   }
 
   StepStatus predict(Filter& filter, double dt_s) {
-    if (dt_s > 0.0) filter.predict(motion_, std::min(dt_s, options_.lost_after_s));
-    if (!filter.x().allFinite() || !filter.P().allFinite()) {
-      filter = *filter_;
+    if (dt_s > 0.0 && filter.predict(motion_, std::min(dt_s, options_.lost_after_s)) == StepStatus::failed) {
       ++guard_.counts.failed;
       return StepStatus::failed;
     }
-    Prediction& prediction = record_.prediction.emplace();
-    prediction.x = filter.x();
-    prediction.P = filter.P();
+    record_.prediction = Prediction{filter.x(), filter.P()};
     return StepStatus::ok;
   }
 
@@ -133,11 +129,7 @@ class FilterTracker final : public Tracker {
       ++guard_.counts.failed;
       return StepStatus::failed;
     }
-    Innovation& innovation = record_.innovation.emplace();
-    innovation.z = measurement.z;
-    innovation.nu = update.nu;
-    innovation.S = update.S;
-    innovation.nis = update.nis;
+    record_.innovation = Innovation{measurement.z, update.nu, update.S, update.nis};
     if (!gate_.passes(update.nis)) {
       ++guard_.counts.gated;
       return StepStatus::rejected;

@@ -1,7 +1,6 @@
-// Covariance matrices: validity, Mahalanobis distance. No inverse is ever formed; Cholesky solves only.
+// Covariance matrices: validity, Mahalanobis distance. No inverse is ever formed.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <cmath>
 #include <algorithm>
@@ -36,24 +35,45 @@ bool is_covariance(const Eigen::MatrixBase<Derived>& A, double tolerance = 1e-9)
   return valid && A.allFinite();
 }
 
+namespace detail {
+
+template <typename Covariance, typename Vector>
+struct Elimination {
+  double squared = 0.0;          // d' P^-1 d, NaN where P is not positive definite
+  double log_determinant = 0.0;  // of P
+
+  // Gaussian elimination; only the lower triangle of P is read. Eigen's decompositions are made for larger matrices and
+  // spend most of their time here on set-up.
+  Elimination(Covariance P, Vector d) {
+    for (Eigen::Index k = 0; k < P.rows(); ++k) {
+      const double pivot = P(k, k) > 0.0 ? P(k, k) : std::numeric_limits<double>::quiet_NaN();
+      squared += d(k) * d(k) / pivot;
+      log_determinant += std::log(pivot);
+      for (Eigen::Index i = k + 1; i < P.rows(); ++i) {
+        const double factor = P(i, k) / pivot;
+        d(i) -= factor * d(k);
+        for (Eigen::Index j = k + 1; j <= i; ++j) P(i, j) -= factor * P(j, k);
+      }
+    }
+  }
+};
+
+}  // namespace detail
+
 /// d' P^-1 d, or NaN where P is not positive definite.
 template <typename DerivedP, typename DerivedD>
 double mahalanobis_squared(const Eigen::MatrixBase<DerivedP>& P, const Eigen::MatrixBase<DerivedD>& d) {
-  const Eigen::LLT<typename DerivedP::PlainObject> cholesky(P);
-  if (cholesky.info() != Eigen::Success) return std::numeric_limits<double>::quiet_NaN();
-  const typename DerivedD::PlainObject whitened = cholesky.matrixL().solve(d);
-  return whitened.squaredNorm();
+  using Elimination = detail::Elimination<typename DerivedP::PlainObject, typename DerivedD::PlainObject>;
+  return Elimination(P, d).squared;
 }
 
 /// Logarithm of the density of N(0, S) at nu, or NaN where S is not positive definite.
 template <typename DerivedS, typename DerivedNu>
 double log_density(const Eigen::MatrixBase<DerivedS>& S, const Eigen::MatrixBase<DerivedNu>& nu) {
-  const Eigen::LLT<typename DerivedS::PlainObject> cholesky(S);
-  if (cholesky.info() != Eigen::Success) return std::numeric_limits<double>::quiet_NaN();
-  const typename DerivedNu::PlainObject whitened = cholesky.matrixL().solve(nu);
-  const double log_determinant = 2.0 * cholesky.matrixLLT().diagonal().array().log().sum();
+  using Elimination = detail::Elimination<typename DerivedS::PlainObject, typename DerivedNu::PlainObject>;
+  const Elimination eliminated(S, nu);
   const double size = static_cast<double>(nu.size());
-  return -0.5 * (whitened.squaredNorm() + log_determinant + size * std::log(2.0 * std::numbers::pi));
+  return -0.5 * (eliminated.squared + eliminated.log_determinant + size * std::log(2.0 * std::numbers::pi));
 }
 
 }  // namespace truebearing

@@ -75,9 +75,7 @@ void Correction::correct_record(const StepRecord& base, const StepRecord& refere
                                 const FuzzyNetwork::Inputs& features, StepRecord& corrected) {
   const FuzzyNetwork& network = model_->network;
   corrected = base;
-  CorrectionOutcome& outcome = corrected.correction.emplace();
-  outcome.base_x = base.x;
-  outcome.base_P = base.P;
+  corrected.correction = CorrectionOutcome{.base_x = base.x, .base_P = base.P};
   corrected.x = reference.x;
   corrected.P = reference.P;
   if (!features.allFinite()) return;  // g = 0
@@ -89,10 +87,10 @@ void Correction::correct_record(const StepRecord& base, const StepRecord& refere
 
   corrected.x += g * limited.d;
   // Written as a change of P_reference: nothing to correct leaves the covariance as it is, to the bit.
-  corrected.P += g * (inflation * source.P - reference.P) + g * (1.0 - g) * (limited.d * limited.d.transpose());
-  outcome.gate = g;
-  outcome.limited = limited.limited;
-  outcome.distance_sigmas = g * limited.distance_sigmas;
+  corrected.P += g * (inflation * source.P - reference.P) + g * (1.0 - g) * limited.d.lazyProduct(limited.d.transpose());
+  corrected.correction->gate = g;
+  corrected.correction->limited = limited.limited;
+  corrected.correction->distance_sigmas = g * limited.distance_sigmas;
 }
 
 }  // namespace truebearing

@@ -4,13 +4,13 @@
 // family, so the bank is the bound that stands beside every corrected result.
 #pragma once
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 #include <vector>
 
-#include "truebearing/core/covariance.hpp"
 #include "truebearing/tracker/stream_guard.hpp"
 #include "truebearing/tracker/tracker.hpp"
 
@@ -76,10 +76,10 @@ class FilterBank final : public Tracker {
     double weight = 0.0;
   };
 
+  // The likelihood of the innovation, up to the power of 2 pi that all members share.
   static void weigh(Member& member, const Sensor& sensor, const Measurement& measurement) {
-    const Eigen::Matrix<double, kMeasurements, 1> z = measurement.z;
-    const auto update = member.filter.update(sensor.model(measurement), z);
-    if (update.status == StepStatus::ok) member.log_weight += log_density(update.S, update.nu);
+    const auto update = member.filter.update(sensor.model(measurement), measurement.z);
+    if (update.status == StepStatus::ok) member.log_weight -= 0.5 * (update.nis + std::log(update.S.determinant()));
   }
 
   // x = sum w x_i, P = sum w (P_i + (x_i - x)(x_i - x)').

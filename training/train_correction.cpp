@@ -55,11 +55,15 @@ Eigen::MatrixXd outputs(const TeacherSet& teacher, const FuzzyNetwork& network) 
   return Y;
 }
 
-// The box of the training data; symmetric in the features that a mirrored target mirrors, where mirror images were taught. The reach has
-// no low side.
-BoxGate box_gate(const FuzzyTrainingData& data, const Eigen::VectorXd& reach_sigmas, const GateSpec& spec) {
+// The box of the training data; symmetric in the features that a mirrored target mirrors, where mirror images were taught. The
+// disagreement has no low side, and no limit where `disagreements` is empty.
+BoxGate box_gate(const FuzzyTrainingData& data, const Eigen::VectorXd& disagreements, const GateSpec& spec) {
   const Eigen::Index d = data.features.cols();
-  BoxGate gate{Eigen::VectorXd(d), Eigen::VectorXd(d), spec.edge_fraction, 0.0, spec.reach_edge_fraction};
+  BoxGate gate;
+  gate.low.resize(d);
+  gate.high.resize(d);
+  gate.edge_fraction = spec.edge_fraction;
+  gate.disagreement_edge_fraction = spec.disagreement_edge_fraction;
   for (Eigen::Index i = 0; i < d; ++i) {
     std::vector<double> values(data.features.col(i).begin(), data.features.col(i).end());
     if (data.mirrored() && data.parity[static_cast<std::size_t>(i)] < 0)
@@ -67,8 +71,23 @@ BoxGate box_gate(const FuzzyTrainingData& data, const Eigen::VectorXd& reach_sig
     gate.low[i] = quantile_of(values, spec.quantile);
     gate.high[i] = quantile_of(std::move(values), 1.0 - spec.quantile);
   }
-  gate.reach_sigmas = quantile_of({reach_sigmas.begin(), reach_sigmas.end()}, 1.0 - spec.reach_quantile);
+  if (disagreements.size() > 0)
+    gate.largest_disagreement = quantile_of({disagreements.begin(), disagreements.end()}, 1.0 - spec.disagreement_quantile);
   return gate;
+}
+
+Eigen::VectorXd disagreements(const TeacherSet& teacher, const Eigen::MatrixXd& corrections, const CorrectionModel& model) {
+  const Eigen::Index n = teacher.Y.cols();
+  Eigen::VectorXd values(teacher.X.rows());
+  FuzzyNetwork::Strengths phi;
+  for (Eigen::Index row = 0; row < values.size(); ++row) {
+    model.network.strengths(FuzzyNetwork::Inputs(teacher.X.row(row).transpose()), phi);
+    const BoundedMatrix source = teacher.covariance_factors.row(row).reshaped(n, n);
+    const BoundedMatrix reference = teacher.reference_factors.row(row).reshaped(n, n);
+    values[row] = disagreement((corrections.row(row) - teacher.reference.row(row)).transpose(),
+                               phi.dot(model.inflation) * source * source.transpose(), reference * reference.transpose());
+  }
+  return values;
 }
 
 }  // namespace
@@ -92,11 +111,13 @@ CorrectionModel train_correction(const Study& study, const std::string& name, co
   model.features = spec.features;
   model.network = FuzzyNetwork(std::move(trained.parameters));
   const Eigen::MatrixXd corrections = outputs(teacher, model.network);
-  if (spec.gate)
-    model.gate = box_gate(data, mahalanobis_lengths(corrections - teacher.reference, teacher.reference_factors), *spec.gate);
   model.kappa = spec.kappa;
   const Eigen::VectorXd lengths = mahalanobis_lengths(teacher.Y - corrections, teacher.covariance_factors);
   model.inflation = covariance_inflation(model.network, teacher.X, lengths.cwiseAbs2() / model.space->size());
+  if (spec.gate) {
+    const bool trusts_another = spec.reference != spec.base;
+    model.gate = box_gate(data, trusts_another ? disagreements(teacher, corrections, model) : Eigen::VectorXd(), *spec.gate);
+  }
   model.usage = trained.usage;
   model.local_mean = trained.local_mean;
   model.provenance = {{"study", study.name()},

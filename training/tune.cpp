@@ -16,6 +16,9 @@
 namespace truebearing {
 namespace {
 
+// A number that does not matter would wander to 0 or infinity: it stays within this factor of its start.
+constexpr double kLargestFactor = 1e4;
+
 // The tuned numbers of a tracker as one vector of logarithms.
 class TunedTracker {
  public:
@@ -88,6 +91,11 @@ double cost_of(const TrackerSummary& summary) {
   return std::isfinite(cost) ? cost : std::numeric_limits<double>::max();
 }
 
+std::vector<double> offset(std::vector<double> values, double by) {
+  for (double& value : values) value += by;
+  return values;
+}
+
 // One factor on all numbers that leaves the estimates as they are: choose it by the NEES.
 void fix_common_factor(std::vector<double>& logarithms, const TunedTracker& tracker, const TuningRuns& runs) {
   const TrackerSummary summary = runs.score(*tracker.make(logarithms));
@@ -126,6 +134,8 @@ TunedValues tune_tracker(const Study& study, const std::string& name, const Tune
           return (*static_cast<std::function<double(const std::vector<double>&)>*>(data))(x);
         },
         &cost);
+    optimizer.set_lower_bounds(offset(tracker.start(), -std::log(kLargestFactor)));
+    optimizer.set_upper_bounds(offset(tracker.start(), std::log(kLargestFactor)));
     optimizer.set_initial_step(step);
     optimizer.set_ftol_abs(1e-7);
     optimizer.set_xtol_abs(1e-3);

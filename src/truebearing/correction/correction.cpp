@@ -81,13 +81,14 @@ void Correction::correct_record(const StepRecord& base, const StepRecord& refere
   if (!features.allFinite()) return;  // g = 0
 
   network.strengths(features, phi_);
-  const Limited limited = limit_kappa(reference.P, base.x + network.output(phi_) - reference.x, model_->kappa);
-  const double g = model_->gate ? model_->gate->weight(features, limited.wanted_sigmas) : 1.0;
-  const double inflation = phi_.dot(model_->inflation);
+  const BoundedVector d = base.x + network.output(phi_) - reference.x;
+  const BoundedMatrix P = phi_.dot(model_->inflation) * source.P;
+  const Limited limited = limit_kappa(reference.P, d, model_->kappa);
+  const double g = model_->gate ? model_->gate->weight(features, disagreement(d, P, reference.P)) : 1.0;
 
   corrected.x += g * limited.d;
   // Written as a change of P_reference: nothing to correct leaves the covariance as it is, to the bit.
-  corrected.P += g * (inflation * source.P - reference.P) + g * (1.0 - g) * limited.d.lazyProduct(limited.d.transpose());
+  corrected.P += g * (P - reference.P) + g * (1.0 - g) * limited.d.lazyProduct(limited.d.transpose());
   corrected.correction->gate = g;
   corrected.correction->limited = limited.limited;
   corrected.correction->distance_sigmas = g * limited.distance_sigmas;

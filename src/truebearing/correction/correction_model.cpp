@@ -36,10 +36,10 @@ void CorrectionModel::validate() const {
     require(gate->low.size() == d && gate->high.size() == d && gate->low.allFinite() && gate->high.allFinite() &&
                 (gate->low.array() <= gate->high.array()).all(),
             "gate", "low and high do not make a box", fmt::format("{} finite numbers each, low <= high", d));
-    require(gate->reach_sigmas > 0.0 && std::isfinite(gate->reach_sigmas), "gate.reach_sigmas",
-            fmt::format("is {}", gate->reach_sigmas), "a number > 0");
-    require(gate->reach_edge_fraction > 0.0 && gate->reach_edge_fraction <= 10.0, "gate.reach_edge_fraction",
-            fmt::format("is {}", gate->reach_edge_fraction), "a number in (0, 10]");
+    require(gate->largest_disagreement > 0.0, "gate.largest_disagreement",
+            fmt::format("is {}", gate->largest_disagreement), "a number > 0, or null for none");
+    require(gate->disagreement_edge_fraction > 0.0 && gate->disagreement_edge_fraction <= 10.0, "gate.disagreement_edge_fraction",
+            fmt::format("is {}", gate->disagreement_edge_fraction), "a number in (0, 10]");
     require(gate->edge_fraction > 0.0 && gate->edge_fraction <= 10.0, "gate.edge_fraction",
             fmt::format("is {}", gate->edge_fraction), "a number in (0, 10]");
   }

@@ -26,7 +26,7 @@ constexpr auto kOptional = FeatureNeeds::Companion::optional;
 constexpr auto kRequired = FeatureNeeds::Companion::required;
 
 // One line per kind: everything the house knows of it besides its formula, which is in feature_extractor.cpp.
-constexpr std::array<Kind, 9> kKinds{{
+constexpr std::array<Kind, 10> kKinds{{
     {FeatureKind::log_step, "log_step", +1, {.blocks = kNothing}},
     {FeatureKind::gain, "gain", +1, {.component = true, .blocks = kGain}},
     {FeatureKind::residual, "residual", -1, {.component = true, .blocks = kInnovation}},
@@ -41,6 +41,7 @@ constexpr std::array<Kind, 9> kKinds{{
      +1,
      {.companion = kOptional, .alpha = true, .offset = true, .blocks = kInnovation}},
     {FeatureKind::log_mean_nis, "log_mean_nis", +1, {.companion = kOptional, .offset = true, .blocks = kInnovation}},
+    {FeatureKind::estimate, "estimate", -1, {.component = true, .companion = kOptional, .scale = true, .blocks = kNothing}},
     {FeatureKind::companion_difference,
      "companion_difference",
      -1,
@@ -83,6 +84,7 @@ std::string describe(const FeatureSpec& feature) {
     case FeatureKind::innovation_average: return fmt::format("innovation average {}{}", feature.alpha, of);
     case FeatureKind::log_nis_average: return fmt::format("ln NIS average {}{}", feature.alpha, of);
     case FeatureKind::log_mean_nis: return "ln mean NIS" + of;
+    case FeatureKind::estimate: return fmt::format("estimate{} in {}", of, feature.component);
     case FeatureKind::companion_difference: return fmt::format("difference{} in {}", of, feature.component);
   }
   return {};

@@ -19,6 +19,7 @@ enum class FeatureKind {
   innovation_average,     ///< a <- (1 - alpha) a + alpha e, divided by sqrt(alpha / (2 - alpha)), its deviation if e is white
   log_nis_average,        ///< ln(offset + a), a <- (1 - alpha) a + alpha NIS
   log_mean_nis,           ///< ln(offset + mean of the NIS of this track so far)
+  estimate,               ///< x[component] / scale
   companion_difference    ///< (x_companion[component] - x[component]) / scale
 };
 
@@ -26,7 +27,7 @@ enum class FeatureKind {
 struct FeatureSpec {
   FeatureKind kind = FeatureKind::log_step;
   std::string component;  ///< of the state, where the kind has one
-  /// The tracker that the base is compared with; for features of the innovations, whose innovations: empty for the base's.
+  /// The tracker that the base is compared with; for other features, whose record they are of: empty for the base's.
   std::string companion;
   double alpha = 0.0;     ///< weight of the newest value in an average, (0, 1]
   double offset = 0.0;    ///< inside a logarithm, > 0

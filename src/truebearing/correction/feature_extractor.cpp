@@ -99,6 +99,7 @@ void FeatureExtractor::remember(Term& term, const StepRecord& record) {
     case FeatureKind::log_nis_average: memory += term.alpha * (innovation.nis - memory); break;
     case FeatureKind::log_mean_nis: memory += (innovation.nis - memory) / term.used; break;
     case FeatureKind::log_step:
+    case FeatureKind::estimate:
     case FeatureKind::companion_difference: break;
   }
 }
@@ -113,6 +114,11 @@ double FeatureExtractor::value(const Term& term, const StepRecord& base, const S
     case FeatureKind::innovation_average: return term.memory / std::sqrt(term.alpha / (2.0 - term.alpha));
     case FeatureKind::log_nis_average:
     case FeatureKind::log_mean_nis: return std::log(term.offset + term.memory);
+    case FeatureKind::estimate: {
+      const StepRecord* record = term.companion < 0 ? &base : companion;
+      return record && record->x.size() == base.x.size() ? record->x[term.component] / term.scale
+                                                         : std::numeric_limits<double>::quiet_NaN();
+    }
     case FeatureKind::companion_difference:
       if (!companion || companion->x.size() != base.x.size()) return std::numeric_limits<double>::quiet_NaN();
       return (companion->x[term.component] - base.x[term.component]) / term.scale;

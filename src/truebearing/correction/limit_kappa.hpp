@@ -13,7 +13,6 @@ namespace truebearing {
 struct Limited {
   BoundedVector d;
   double distance_sigmas = 0.0;  ///< of the returned d
-  double wanted_sigmas = 0.0;    ///< of the d that was given; NaN or infinite where that has none
   bool limited = false;
 };
 
@@ -23,9 +22,9 @@ inline Limited limit_kappa(const BoundedMatrix& P, const BoundedVector& d, doubl
   const double distance_sigmas = std::sqrt(mahalanobis_squared(P, d));
   const bool bounded = kappa < std::numeric_limits<double>::infinity();
   if (!d.allFinite() || (bounded && !std::isfinite(distance_sigmas)))
-    return {BoundedVector::Zero(d.size()), 0.0, distance_sigmas, true};
-  if (distance_sigmas > kappa) return {d * (kappa / distance_sigmas), kappa, distance_sigmas, true};
-  return {d, distance_sigmas, distance_sigmas, false};
+    return {BoundedVector::Zero(d.size()), 0.0, true};
+  if (distance_sigmas > kappa) return {d * (kappa / distance_sigmas), kappa, true};
+  return {d, distance_sigmas, false};
 }
 
 }  // namespace truebearing

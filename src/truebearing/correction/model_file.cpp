@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "truebearing/core/error.hpp"
@@ -40,6 +41,10 @@ class ObjectReader {
   }
 
   double number(const std::string& key) { return finite(at(key), key); }
+  /// A limit: null stands for none, infinity.
+  double number_or_none(const std::string& key) {
+    return at(key).is_null() ? std::numeric_limits<double>::infinity() : number(key);
+  }
 
   Eigen::VectorXd vector(const std::string& key, Eigen::Index size) {
     const Json& value = at(key);
@@ -121,6 +126,8 @@ OrderedJson array_json(const Eigen::MatrixBase<Derived>& values) {
   return array;
 }
 
+OrderedJson limit_json(double limit) { return std::isfinite(limit) ? OrderedJson(limit) : OrderedJson(nullptr); }
+
 std::vector<std::string> read_texts(ObjectReader& object, const std::string& key, std::size_t high) {
   std::vector<std::string> texts;
   for (const Json& value : object.array(key, 1, high)) {
@@ -141,8 +148,7 @@ CorrectionModel model_from(const Json& json, const std::string& name) {
   model.base = file.text("base");
   model.reference = file.text("reference");
   model.covariance_of = file.text("covariance_of");
-  const Json& kappa = file.at("kappa");
-  if (!kappa.is_null()) model.kappa = file.number("kappa");
+  model.kappa = file.number_or_none("kappa");
   ObjectReader trackers = file.object("trackers");
   for (const auto& [key, value] : json["trackers"].items()) model.trackers[key] = trackers.text(key);
 
@@ -163,7 +169,7 @@ CorrectionModel model_from(const Json& json, const std::string& name) {
   if (!file.at("gate").is_null()) {
     ObjectReader gate = file.object("gate");
     model.gate = BoxGate{gate.vector("low", d), gate.vector("high", d), gate.number("edge_fraction"),
-                         gate.number("reach_sigmas"), gate.number("reach_edge_fraction")};
+                         gate.number_or_none("largest_disagreement"), gate.number("disagreement_edge_fraction")};
     gate.finish();
   }
 
@@ -213,7 +219,7 @@ std::string model_text(const CorrectionModel& model) {
   json["base"] = model.base;
   json["reference"] = model.reference;
   json["covariance_of"] = model.covariance_of;
-  json["kappa"] = std::isfinite(model.kappa) ? OrderedJson(model.kappa) : OrderedJson(nullptr);
+  json["kappa"] = limit_json(model.kappa);
   json["trackers"] = OrderedJson::object();
   for (const auto& [name, configuration] : model.trackers) json["trackers"][name] = configuration;
   json["features"] = OrderedJson::array();
@@ -227,8 +233,8 @@ std::string model_text(const CorrectionModel& model) {
     json["gate"] = {{"low", array_json(model.gate->low)},
                     {"high", array_json(model.gate->high)},
                     {"edge_fraction", model.gate->edge_fraction},
-                    {"reach_sigmas", model.gate->reach_sigmas},
-                    {"reach_edge_fraction", model.gate->reach_edge_fraction}};
+                    {"largest_disagreement", limit_json(model.gate->largest_disagreement)},
+                    {"disagreement_edge_fraction", model.gate->disagreement_edge_fraction}};
   json["rules"] = OrderedJson::array();
   for (Eigen::Index j = 0; j < parameters.centres.rows(); ++j)
     json["rules"].push_back({{"centre", array_json(parameters.centres.row(j))},

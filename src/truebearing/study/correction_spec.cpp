@@ -43,7 +43,7 @@ TrainingSpec read_training(TableReader& table) {
   return training;
 }
 
-// gate = true, false, or { quantile, edge_fraction, reach_quantile, reach_edge_fraction }.
+// gate = true, false, or { quantile, edge_fraction, disagreement_quantile, disagreement_edge_fraction }.
 std::optional<GateSpec> read_gate(TableReader& table) {
   GateSpec gate;
   const toml::node* node = table.node("gate");
@@ -52,8 +52,8 @@ std::optional<GateSpec> read_gate(TableReader& table) {
   TableReader sub = table.table("gate");
   gate.quantile = sub.number_or("quantile", gate.quantile, {0.0, 0.25});
   gate.edge_fraction = sub.number_or("edge_fraction", gate.edge_fraction, {0.0, 10.0, true});
-  gate.reach_quantile = sub.number_or("reach_quantile", gate.reach_quantile, {0.0, 0.5});
-  gate.reach_edge_fraction = sub.number_or("reach_edge_fraction", gate.reach_edge_fraction, {0.0, 10.0, true});
+  gate.disagreement_quantile = sub.number_or("disagreement_quantile", gate.disagreement_quantile, {0.0, 0.5});
+  gate.disagreement_edge_fraction = sub.number_or("disagreement_edge_fraction", gate.disagreement_edge_fraction, {0.0, 10.0, true});
   sub.finish();
   return gate;
 }

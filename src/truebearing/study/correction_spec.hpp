@@ -35,8 +35,8 @@ struct TrainingSpec {
 struct GateSpec {
   double quantile = 0.001;     ///< the box leaves out this share of the training data at either end of each feature
   double edge_fraction = 0.1;
-  double reach_quantile = 0.05;  ///< and this share of the corrections, those that went farthest from the reference
-  double reach_edge_fraction = 0.05;
+  double disagreement_quantile = 0.005;  ///< and this share of the corrections, those that disagreed most with the reference
+  double disagreement_edge_fraction = 0.05;
 };
 
 struct CorrectionSpec {

@@ -43,7 +43,7 @@ struct BoxGate {
       const double outside = std::max({low[i] - inputs[i], inputs[i] - high[i], 0.0});
       if (outside > 0.0) worst = std::max(worst, outside / (edge_fraction * (high[i] - low[i])));
     }
-    return std::exp(-0.5 * worst * worst);
+    return worst > 0.0 ? std::exp(-0.5 * worst * worst) : 1.0;
   }
 };
 

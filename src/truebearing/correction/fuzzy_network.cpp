@@ -14,6 +14,8 @@ namespace {
 // exp(-700) is the smallest round power that is still a normal number: denormal strengths mean nothing and cost a
 // hundred cycles each.
 constexpr double kLowestExponent = -700.0;
+// Scaled centre of a rule that only fills up a block: its exponent is the lowest of all.
+constexpr double kNeverFires = 1e154;
 
 std::string size_of(const Eigen::MatrixXd& matrix) {
   return std::to_string(matrix.rows()) + " x " + std::to_string(matrix.cols());
@@ -62,29 +64,45 @@ void validate(const FuzzyNetwork::Parameters& p) {
 
 FuzzyNetwork::FuzzyNetwork(Parameters parameters) : parameters_(std::move(parameters)) {
   validate(parameters_);
-  inverse_widths_ = std::sqrt(0.5) / parameters_.widths.array();
-  scaled_centres_ = parameters_.centres.cwiseProduct(inverse_widths_);
+  const Eigen::ArrayXXd inverse_widths = std::sqrt(0.5) / parameters_.widths.array();
+  const Eigen::ArrayXXd scaled_centres = parameters_.centres.array() * inverse_widths;
   scaled_consequents_ = parameters_.output_scale.asDiagonal() * parameters_.consequents.transpose();
   // Each factor is finite; the products of extreme ones need not be, and 0 * inf is not a strength.
-  if (!inverse_widths_.allFinite() || !scaled_centres_.allFinite() || !scaled_consequents_.allFinite()) {
+  if (!inverse_widths.allFinite() || !scaled_centres.allFinite() || !scaled_consequents_.allFinite()) {
     throw InputError("fuzzy network", "widths or output_scale out of range", "products with finite results");
   }
+  const Eigen::Index blocks = (rules() + kLanes - 1) / kLanes;
+  inverse_widths_.setZero(kLanes, blocks * inputs());
+  scaled_centres_.setConstant(kLanes, blocks * inputs(), kNeverFires);
+  for (Eigen::Index j = 0; j < rules(); ++j)
+    for (Eigen::Index i = 0; i < inputs(); ++i) {
+      inverse_widths_(j % kLanes, j / kLanes * inputs() + i) = inverse_widths(j, i);
+      scaled_centres_(j % kLanes, j / kLanes * inputs() + i) = scaled_centres(j, i);
+    }
 }
 
 void FuzzyNetwork::strengths(const Inputs& input, Strengths& phi) const {
-  phi.setZero(rules());
-  for (Eigen::Index i = 0; i < inputs(); ++i) {
+  const Eigen::Index d = inputs();
+  phi.resize(rules());
+  Inputs u(d);
+  for (Eigen::Index i = 0; i < d; ++i) {
     const double standardised = (input[i] - parameters_.input_mean[i]) / parameters_.input_scale[i];
     if (std::isnan(standardised)) {
       phi.setConstant(std::numeric_limits<double>::quiet_NaN());
       return;
     }
-    const double u = std::clamp(standardised, -parameters_.input_clip, parameters_.input_clip);
-    phi.array() -= (u * inverse_widths_.col(i) - scaled_centres_.col(i)).array().square();
+    u[i] = std::clamp(standardised, -parameters_.input_clip, parameters_.input_clip);
   }
-  const double peak = phi.maxCoeff();
-  phi = (phi.array() - peak).max(kLowestExponent).exp();
-  phi *= 1.0 / phi.sum();
+  const Eigen::Index blocks = inverse_widths_.cols() / d;
+  Eigen::Array<double, kLanes, Eigen::Dynamic, 0, kLanes, kMaxRules / kLanes> exponents(kLanes, blocks);
+  for (Eigen::Index b = 0; b < blocks; ++b) {
+    Block exponent = Block::Zero();
+    for (Eigen::Index i = 0; i < d; ++i)
+      exponent -= (u[i] * inverse_widths_.col(b * d + i) - scaled_centres_.col(b * d + i)).square();
+    exponents.col(b) = exponent;
+  }
+  exponents = (exponents - exponents.maxCoeff()).max(kLowestExponent).exp();
+  phi = Eigen::Map<const Eigen::VectorXd>(exponents.data(), rules()) / exponents.sum();
 }
 
 FuzzyNetwork::Outputs FuzzyNetwork::output(const Strengths& phi) const {

@@ -52,10 +52,15 @@ class FuzzyNetwork {
   Outputs output(const Strengths& phi) const;
 
  private:
+  // Rules are evaluated kLanes at a time; those that fill up the last block never fire.
+  static constexpr int kLanes = 4;
+  using Block = Eigen::Array<double, kLanes, 1>;
+  using Blocks = Eigen::Array<double, kLanes, Eigen::Dynamic>;
+
   Parameters parameters_;
-  // The exponents as they are evaluated, -((u - c) / (sqrt(2) s))^2, one row per rule: precomputed.
-  Eigen::MatrixXd scaled_centres_;      // (M x d), c / (sqrt(2) s)
-  Eigen::MatrixXd inverse_widths_;      // (M x d), 1 / (sqrt(2) s)
+  // The exponents as they are evaluated, -((u - c) / (sqrt(2) s))^2: column b d + i is input i of block b.
+  Blocks scaled_centres_;  // c / (sqrt(2) s)
+  Blocks inverse_widths_;  // 1 / (sqrt(2) s)
   Eigen::MatrixXd scaled_consequents_;  // (p x M), in the units of the outputs
 };
 

@@ -19,7 +19,8 @@ void monte_carlo(std::size_t runs, int threads, const std::function<void(std::si
   std::size_t done = 0;
   std::mutex progress_mutex;
   const std::size_t workers = std::min(worker_count(threads), std::max<std::size_t>(runs, 1));
-  tbb::task_arena arena(static_cast<int>(workers));
+  // More workers than cores take turns: asking TBB for threads that it will not give makes it complain.
+  tbb::task_arena arena(std::min(static_cast<int>(workers), tbb::this_task_arena::max_concurrency()));
   arena.execute([&] {
     tbb::parallel_for(
         std::size_t{0}, workers,

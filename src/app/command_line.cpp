@@ -1,7 +1,9 @@
 #include "app/command_line.hpp"
 
+#include <cstdio>
 #include <exception>
 #include <fmt/format.h>
+#include <system_error>
 
 #include "app/subcommands.hpp"
 #include "truebearing/core/error.hpp"
@@ -21,10 +23,14 @@ int command_line(int argc, const char* const* argv) {
   add_rules(app);
   try {
     app.parse(argc, argv);
+    if (std::fflush(stdout) != 0) throw InputError("standard output", "cannot be written");
     return 0;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   } catch (const InputError& error) {
+    fmt::print(stderr, "truebearing: {}\n", error.what());
+    return 1;
+  } catch (const std::system_error& error) {  // of a full disk behind standard output, say
     fmt::print(stderr, "truebearing: {}\n", error.what());
     return 1;
   } catch (const std::exception& error) {

@@ -65,7 +65,7 @@ void print_consistency(const TrackerSet& trackers, const std::vector<InnovationC
   }
   for (int i = 0; i < trackers.size(); ++i)
     if (consistency[static_cast<std::size_t>(i)].is_implausible_at_start())
-      fmt::print(stderr, "truebearing: {}: the first innovations are far larger than claimed: is a column in another unit?\n", trackers.name(i));
+      fmt::print(stderr, "truebearing: {}: the first innovations are far from the size that it claims: is a column in another unit?\n", trackers.name(i));
 }
 
 // The log's own measurements as the one run of a comparison.

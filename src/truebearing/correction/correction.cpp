@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "truebearing/core/covariance.hpp"
 #include "truebearing/core/error.hpp"
 #include "truebearing/correction/limit_kappa.hpp"
 
@@ -82,13 +83,16 @@ void Correction::correct_record(const StepRecord& base, const StepRecord& refere
 
   network.strengths(features, phi_);
   const BoundedVector d = base.x + network.output(phi_) - reference.x;
-  const BoundedMatrix P = phi_.dot(model_->inflation) * source.P;
+  const BoundedMatrix P_c = phi_.dot(model_->inflation) * source.P;
   const Limited limited = limit_kappa(reference.P, d, model_->kappa);
-  const double g = model_->gate ? model_->gate->weight(features, disagreement(d, P, reference.P)) : 1.0;
+  const double g = model_->gate ? model_->gate->weight(features, disagreement(d, P_c, reference.P)) : 1.0;
 
-  corrected.x += g * limited.d;
+  const BoundedVector x = reference.x + g * limited.d;
   // Written as a change of P_reference: nothing to correct leaves the covariance as it is, to the bit.
-  corrected.P += g * (P - reference.P) + g * (1.0 - g) * limited.d.lazyProduct(limited.d.transpose());
+  const BoundedMatrix P = reference.P + g * (P_c - reference.P) + g * (1.0 - g) * limited.d.lazyProduct(limited.d.transpose());
+  if (!x.allFinite() || !is_covariance(P)) return;  // numbers of any size may overflow or cancel: g = 0
+  corrected.x = x;
+  corrected.P = P;
   corrected.correction->gate = g;
   corrected.correction->limited = limited.limited;
   corrected.correction->distance_sigmas = g * limited.distance_sigmas;

@@ -11,7 +11,7 @@
 namespace truebearing {
 
 enum class FeatureKind {
-  log_step,               ///< ln k, k the number of records of this track so far
+  log_step,               ///< ln k, k the number of steps of this track in which the base used its measurement, 1 before the first
   gain,                   ///< K[component, 0]
   residual,               ///< z - x[component], after the update
   prediction_difference,  ///< x_pred[component] - x[component]

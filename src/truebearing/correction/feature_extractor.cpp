@@ -65,7 +65,7 @@ void FeatureExtractor::begin_track(int track) {
 
 void FeatureExtractor::extract(const StepRecord& base, std::span<const StepRecord* const> companions, Features& features) {
   if (base.track != track_) begin_track(base.track);
-  steps_ += 1.0;
+  if (base.status == StepStatus::ok) steps_ += 1.0;
   features.resize(size());
   for (int i = 0; i < size(); ++i) {
     Term& term = terms_[static_cast<std::size_t>(i)];
@@ -105,8 +105,9 @@ void FeatureExtractor::remember(Term& term, const StepRecord& record) {
 }
 
 double FeatureExtractor::value(const Term& term, const StepRecord& base, const StepRecord* companion, double steps) {
+  if (term.companion >= 0 && !companion) return std::numeric_limits<double>::quiet_NaN();
   switch (term.kind) {
-    case FeatureKind::log_step: return std::log(steps);
+    case FeatureKind::log_step: return std::log(std::max(steps, 1.0));
     case FeatureKind::gain:
     case FeatureKind::residual:
     case FeatureKind::prediction_difference:
@@ -115,12 +116,11 @@ double FeatureExtractor::value(const Term& term, const StepRecord& base, const S
     case FeatureKind::log_nis_average:
     case FeatureKind::log_mean_nis: return std::log(term.offset + term.memory);
     case FeatureKind::estimate: {
-      const StepRecord* record = term.companion < 0 ? &base : companion;
-      return record && record->x.size() == base.x.size() ? record->x[term.component] / term.scale
-                                                         : std::numeric_limits<double>::quiet_NaN();
+      const BoundedVector& x = companion ? companion->x : base.x;
+      return x.size() == base.x.size() ? x[term.component] / term.scale : std::numeric_limits<double>::quiet_NaN();
     }
     case FeatureKind::companion_difference:
-      if (!companion || companion->x.size() != base.x.size()) return std::numeric_limits<double>::quiet_NaN();
+      if (companion->x.size() != base.x.size()) return std::numeric_limits<double>::quiet_NaN();
       return (companion->x[term.component] - base.x[term.component]) / term.scale;
   }
   return std::numeric_limits<double>::quiet_NaN();

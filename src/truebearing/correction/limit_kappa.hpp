@@ -21,10 +21,12 @@ struct Limited {
 inline Limited limit_kappa(const BoundedMatrix& P, const BoundedVector& d, double kappa) {
   const double distance_sigmas = std::sqrt(mahalanobis_squared(P, d));
   const bool bounded = kappa < std::numeric_limits<double>::infinity();
-  if (!d.allFinite() || (bounded && !std::isfinite(distance_sigmas)))
-    return {BoundedVector::Zero(d.size()), 0.0, true};
-  if (distance_sigmas > kappa) return {d * (kappa / distance_sigmas), kappa, true};
-  return {d, distance_sigmas, false};
+  const Limited nothing{BoundedVector::Zero(d.size()), 0.0, true};
+  if (!d.allFinite() || (bounded && !std::isfinite(distance_sigmas))) return nothing;
+  if (!(distance_sigmas > kappa)) return {d, distance_sigmas, false};
+  // At the ends of the range of double a vector and its length need not scale together: measured again, not trusted.
+  const Limited shortened{d * (kappa / distance_sigmas), kappa, true};
+  return std::sqrt(mahalanobis_squared(P, shortened.d)) <= kappa * (1.0 + 1e-9) ? shortened : nothing;
 }
 
 }  // namespace truebearing

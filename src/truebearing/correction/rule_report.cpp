@@ -14,10 +14,13 @@ std::string unit_of(const std::string& component) {
   return unit == "mps" ? "m/s" : unit;
 }
 
+// Three significant digits, without an exponent.
+std::string amount(double value) { return std::abs(value) >= 100.0 ? fmt::format("{:+.0f}", value) : fmt::format("{:+.3g}", value); }
+
 std::string amounts(const StateSpace& space, const Eigen::VectorXd& values) {
   std::string text;
   for (int i = 0; i < space.size(); ++i)
-    text += fmt::format("{}{:+.3g} {}", i == 0 ? "" : ", ", values[i], unit_of(space.components[static_cast<std::size_t>(i)]));
+    text += fmt::format("{}{} {}", i == 0 ? "" : ", ", amount(values[i]), unit_of(space.components[static_cast<std::size_t>(i)]));
   return text;
 }
 

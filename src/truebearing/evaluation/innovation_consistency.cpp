@@ -8,13 +8,15 @@
 namespace truebearing {
 
 void InnovationConsistency::add(const StepRecord& record) {
-  if (!record.innovation || record.status != StepStatus::ok) return;
+  if (!record.innovation) return;
   const Innovation& innovation = *record.innovation;
   const double freedom = static_cast<double>(innovation.nu.size());
-  if (steps_ < kFirstSteps) {
+  if (first_steps_ < kFirstSteps) {  // also those that a gate turned away: with a wrong unit it turns away all
+    ++first_steps_;
     first_freedom_ += freedom;
     first_nis_sum_ += innovation.nis;
   }
+  if (record.status != StepStatus::ok) return;
   ++steps_;
   freedom_ += freedom;
   nis_sum_ += innovation.nis;
@@ -46,8 +48,11 @@ double InnovationConsistency::correlation_limit() const {
 }
 
 bool InnovationConsistency::is_implausible_at_start() const {
-  // A badly chosen prior gives tens; metres taken for kilometres, or degrees for radians, give thousands.
-  return first_freedom_ > 0.0 && first_nis_sum_ > 100.0 * chi_square_quantile(0.975, first_freedom_);
+  // A badly chosen prior gives tens; metres taken for kilometres, or degrees for radians, give thousands, or thousandths.
+  constexpr double kFactor = 100.0;
+  if (first_steps_ == 0) return false;
+  if (first_nis_sum_ > kFactor * chi_square_quantile(0.975, first_freedom_)) return true;
+  return first_steps_ == kFirstSteps && first_nis_sum_ < chi_square_quantile(0.025, first_freedom_) / kFactor;
 }
 
 }  // namespace truebearing

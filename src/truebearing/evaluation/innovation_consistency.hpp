@@ -20,7 +20,8 @@ class InnovationConsistency {
   /// they are white.
   double correlation() const;
   double correlation_limit() const;
-  /// True where the NIS of the first steps is so large that a wrong unit or a wrong column is likelier than chance.
+  /// True where the NIS of the first steps, used or gated, is so large or so small that a wrong unit or a wrong column is
+  /// likelier than chance.
   bool is_implausible_at_start() const;
 
  private:
@@ -29,6 +30,7 @@ class InnovationConsistency {
   int steps_ = 0;
   double freedom_ = 0.0;
   double nis_sum_ = 0.0;
+  int first_steps_ = 0;
   double first_freedom_ = 0.0;
   double first_nis_sum_ = 0.0;
   double last_e_ = 0.0;

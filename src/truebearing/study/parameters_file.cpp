@@ -1,11 +1,34 @@
 #include "truebearing/study/parameters_file.hpp"
 
 #include <fmt/format.h>
+#include <string_view>
 
 #include "truebearing/core/error.hpp"
 #include "truebearing/io/table_reader.hpp"
 
 namespace truebearing {
+namespace {
+
+// A basic string of TOML.
+std::string toml_text(std::string_view text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+      result += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
+    else
+      result += c;
+  }
+  return result + "\"";
+}
+
+std::string toml_key(std::string_view name) {
+  const bool bare = !name.empty() && name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") ==
+                                         std::string_view::npos;
+  return bare ? std::string(name) : toml_text(name);
+}
+
+}  // namespace
 
 ParametersFile read_parameters_file(const std::filesystem::path& path) {
   const toml::table table = read_toml_file(path);
@@ -13,11 +36,11 @@ ParametersFile read_parameters_file(const std::filesystem::path& path) {
   TableReader reader(table, path.string());
   for (const std::string& name : reader.keys()) {
     TableReader tracker = reader.table(name);
-    for (const std::string& key : tracker.keys()) {
+    for (const std::string& parameter : tracker.keys()) {
       if (name == "provenance")
-        parameters.provenance.emplace_back(key, tracker.text(key));
+        parameters.provenance.emplace_back(parameter, tracker.text(parameter));
       else
-        parameters.trackers[name][key] = tracker.numbers(key, -1, kPositive);
+        parameters.trackers[name][parameter] = tracker.numbers(parameter, -1, kPositive);
     }
   }
   return parameters;
@@ -26,13 +49,13 @@ ParametersFile read_parameters_file(const std::filesystem::path& path) {
 std::string parameters_text(const ParametersFile& parameters) {
   std::string text = "# Baseline parameters, written by `truebearing tune`. Studies name this file under `parameters`.\n";
   text += "\n[provenance]\n";
-  for (const auto& [key, value] : parameters.provenance) text += fmt::format("{} = \"{}\"\n", key, value);
+  for (const auto& [name, value] : parameters.provenance) text += fmt::format("{} = {}\n", toml_key(name), toml_text(value));
   for (const auto& [name, values] : parameters.trackers) {
-    text += fmt::format("\n[{}]\n", name);
+    text += fmt::format("\n[{}]\n", toml_key(name));
     for (const auto& [path, numbers] : values) {
       std::string list;
       for (const double value : numbers) list += fmt::format("{}{:.6g}", list.empty() ? "" : ", ", value);
-      text += numbers.size() == 1 ? fmt::format("\"{}\" = {}\n", path, list) : fmt::format("\"{}\" = [{}]\n", path, list);
+      text += numbers.size() == 1 ? fmt::format("{} = {}\n", toml_text(path), list) : fmt::format("{} = [{}]\n", toml_text(path), list);
     }
   }
   return text;
@@ -61,15 +84,15 @@ void put_numbers(toml::table& table, const std::string& path, const std::vector<
     parent = next;
     begin = dot + 1;
   }
-  const std::string key = path.substr(begin);
-  const toml::node* old = parent->get(key);
+  const std::string last = path.substr(begin);
+  const toml::node* old = parent->get(last);
   if (values.size() == 1 && !(old && old->is_array())) {
-    parent->insert_or_assign(key, values.front());
+    parent->insert_or_assign(last, values.front());
     return;
   }
   toml::array array;
   for (const double value : values) array.push_back(value);
-  parent->insert_or_assign(key, std::move(array));
+  parent->insert_or_assign(last, std::move(array));
 }
 
 }  // namespace truebearing

@@ -141,7 +141,7 @@ void Study::read_trackers(TableReader table, const std::vector<std::string>& ord
     spec.shown = reader.boolean_or("show", true);
     if (reader.has("tune")) {
       spec.tune = reader.texts("tune");
-      for (const std::string& path : spec.tune) numbers_at(spec.configuration, path, "trackers." + name + ".tune");
+      for (const std::string& path : spec.tune) numbers_at(spec.configuration, path, table.file() + ": trackers." + name + ".tune");
     }
     for (const char* key : kStudyKeys) reader.node(key);
     if (spec.kind == "corrected") {
@@ -158,6 +158,7 @@ void Study::check_trackers() {
   for (const TrackerSpec& spec : trackers_) {
     if (!spec.correction) {
       TableReader reader(spec.configuration, path_.string(), "trackers." + spec.name);
+      for (const char* key : kStudyKeys) reader.node(key);  // valid too, for whoever misspelt one
       truebearing::make_tracker(spec.kind, reader);
       continue;
     }

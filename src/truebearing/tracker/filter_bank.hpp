@@ -40,15 +40,18 @@ class FilterBank final : public Tracker {
       record_.status = StepStatus::rejected;
       return record_.x.size() == 0 ? std::span<const StepRecord>() : std::span<const StepRecord>(&record_, 1);
     }
-    const bool usable = verdict == StreamGuard::Verdict::usable && measurement.z.size() == kMeasurements;
-    const double dt_s = measurement.time_s - time_s_;
-    time_s_ = measurement.time_s;
-    record_.time_s = time_s_;
+    record_.time_s = measurement.time_s;
     record_.sensor = measurement.sensor;
-    record_.status = usable ? StepStatus::ok : StepStatus::coasted;
-    for (std::size_t i = 0; i < members_.size(); ++i) {
-      members_[i].filter.predict(hypotheses_[i].motion, dt_s);
-      if (usable) weigh(members_[i], hypotheses_[i].sensor, measurement);
+    record_.status = predict(measurement.time_s - used_time_s_);
+    const bool usable = verdict == StreamGuard::Verdict::usable && measurement.z.size() == kMeasurements;
+    if (record_.status == StepStatus::coasted && usable) {
+      record_.status = weigh(measurement);
+      if (record_.status == StepStatus::failed) predict(measurement.time_s - used_time_s_);
+    }
+    if (record_.status == StepStatus::failed) ++guard_.counts.failed;
+    if (record_.status == StepStatus::ok) {
+      members_ = shown_;
+      used_time_s_ = measurement.time_s;
     }
     publish_mixture();
     return {&record_, 1};
@@ -58,9 +61,9 @@ class FilterBank final : public Tracker {
     guard_ = {};
     record_ = {};
     record_.space = space_;
-    time_s_ = start_time_s_;
+    used_time_s_ = start_time_s_;
     members_.clear();
-    for (const Hypothesis& hypothesis : hypotheses_) members_.push_back({hypothesis.start, hypothesis.log_weight, 0.0});
+    for (const Hypothesis& hypothesis : hypotheses_) members_.push_back({hypothesis.start, hypothesis.log_weight});
   }
 
   std::unique_ptr<Tracker> clone() const override {
@@ -70,33 +73,57 @@ class FilterBank final : public Tracker {
   TrackerCounts counts() const override { return guard_.counts; }
 
  private:
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
   struct Member {
     Filter filter;
     double log_weight;
-    double weight = 0.0;
+    double weight = 0.0;  // not normalised
   };
 
-  // The likelihood of the innovation, up to the power of 2 pi that all members share.
-  static void weigh(Member& member, const Sensor& sensor, const Measurement& measurement) {
-    const auto update = member.filter.update(sensor.model(measurement), measurement.z);
-    if (update.status == StepStatus::ok) member.log_weight -= 0.5 * (update.nis + std::log(update.S.determinant()));
+  // The members at the end of a step of dt_s. They themselves stay at their last used measurement: a missing one leaves no trace
+  // in what follows, to the bit.
+  StepStatus predict(double dt_s) {
+    shown_ = members_;
+    if (!(dt_s > 0.0)) return StepStatus::coasted;
+    bool valid = true;
+    for (std::size_t i = 0; i < shown_.size(); ++i)
+      valid &= shown_[i].filter.predict(hypotheses_[i].motion, dt_s) != StepStatus::failed;
+    if (valid) return StepStatus::coasted;
+    shown_ = members_;
+    return StepStatus::failed;
+  }
+
+  // `failed` where no member can explain the measurement in finite numbers. One that cannot, where others can, has lost.
+  StepStatus weigh(const Measurement& measurement) {
+    double largest = -kInfinity;
+    for (std::size_t i = 0; i < shown_.size(); ++i) {
+      Member& member = shown_[i];
+      const auto update = member.filter.update(hypotheses_[i].sensor.model(measurement), measurement.z);
+      // The likelihood of the innovation, up to the power of 2 pi that all members share.
+      const double gained = -0.5 * (update.nis + std::log(update.S.determinant()));
+      member.log_weight += update.status == StepStatus::ok && std::isfinite(gained) ? gained : -kInfinity;
+      largest = std::max(largest, member.log_weight);
+    }
+    if (largest == -kInfinity) return StepStatus::failed;
+    for (Member& member : shown_) member.log_weight -= largest;
+    return StepStatus::ok;
   }
 
   // x = sum w x_i, P = sum w (P_i + (x_i - x)(x_i - x)').
   void publish_mixture() {
-    double largest = -std::numeric_limits<double>::infinity();
-    for (const Member& member : members_) largest = std::max(largest, member.log_weight);
     Eigen::Matrix<double, kStates, 1> x = Eigen::Matrix<double, kStates, 1>::Zero();
     Eigen::Matrix<double, kStates, kStates> P = Eigen::Matrix<double, kStates, kStates>::Zero();
-    double total = 0.0;
-    for (Member& member : members_) {
-      member.log_weight -= largest;
-      member.weight = std::exp(member.log_weight);
+    double largest = -kInfinity, total = 0.0;
+    for (const Member& member : shown_) largest = std::max(largest, member.log_weight);
+    for (Member& member : shown_) {
+      member.weight = std::exp(member.log_weight - largest);
       total += member.weight;
       x += member.weight * member.filter.x();
     }
     x /= total;
-    for (const Member& member : members_) {
+    for (const Member& member : shown_) {
+      if (member.weight == 0.0) continue;  // it may be so far off that its spread is not finite
       const Eigen::Matrix<double, kStates, 1> d = member.filter.x() - x;
       P += member.weight / total * (member.filter.P() + d * d.transpose());
     }
@@ -108,8 +135,9 @@ class FilterBank final : public Tracker {
   std::vector<Hypothesis> hypotheses_;
   double start_time_s_;
   StreamGuard guard_;
-  std::vector<Member> members_;
-  double time_s_ = 0.0;
+  std::vector<Member> members_;  // at the last measurement that was used
+  std::vector<Member> shown_;    // at the last step
+  double used_time_s_ = 0.0;
   StepRecord record_;
 };
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -113,6 +114,7 @@ class FilterTracker final : public Tracker {
   }
 
   StepStatus predict(Filter& filter, double dt_s) {
+    // A failed prediction leaves the filter where it was, which is not where it would be by now.
     if (dt_s > 0.0 && filter.predict(motion_, std::min(dt_s, options_.lost_after_s)) == StepStatus::failed) {
       ++guard_.counts.failed;
       return StepStatus::failed;
@@ -125,7 +127,7 @@ class FilterTracker final : public Tracker {
   StepStatus update(Filter& filter, const Measurement& measurement) {
     Filter updated = filter;
     const auto update = updated.update(sensor_.model(measurement), Vector(measurement.z));
-    if (update.status == StepStatus::failed) {
+    if (update.status == StepStatus::failed || !std::isfinite(update.nis)) {  // so far off that its square overflows
       ++guard_.counts.failed;
       return StepStatus::failed;
     }

@@ -1,0 +1,227 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/app/program.hpp"
+#include "truebearing/tracker/step_log.hpp"
+
+namespace truebearing {
+namespace {
+
+using nlohmann::json;
+using testing::is_one_line;
+using testing::kStudy;
+using testing::Outcome;
+using testing::replaced;
+using testing::run;
+using testing::TemporaryFolder;
+using testing::write_study;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+TEST(Program, WrongUsageIsStatus2) {
+  const TemporaryFolder folder;
+  for (const char* wrong : {"", "fly", "check", "compare", "compare small.toml --rnus 3", "compare small.toml --runs 0",
+                            "compare small.toml --runs many", "compare small.toml --threads -1", "simulate scenario.toml",
+                            "track small.toml", "rules a b", "--nonsense"}) {
+    const Outcome outcome = run(folder, wrong);
+    EXPECT_EQ(outcome.status, 2) << wrong;
+    EXPECT_FALSE(outcome.err.empty()) << wrong;
+    EXPECT_TRUE(outcome.out.empty()) << wrong;
+  }
+}
+
+TEST(Program, HelpAndVersionAreStatus0) {
+  const TemporaryFolder folder;
+  for (const char* fine : {"--help", "--version", "compare --help"}) {
+    const Outcome outcome = run(folder, fine);
+    EXPECT_EQ(outcome.status, 0) << fine;
+    EXPECT_FALSE(outcome.out.empty()) << fine;
+  }
+}
+
+TEST(Program, BadInputIsStatus1AndOneLineThatNamesWhereAndWhat) {
+  const TemporaryFolder folder;
+  write_study(folder);
+  folder.write("misspelt.toml", replaced(kStudy, "runs = 20\nseed", "rnus = 20\nseed"));
+  folder.write("broken.toml", "name = = 1\n");
+  folder.write("text.csv", "time_s,position_m\n1,100\n2,ten\n");
+  folder.write("back.csv", "time_s,position_m\n1,100\n3,200\n2,150\n");
+  folder.write("bearings.csv", "time_s,bearing_deg\n1,100\n");
+  folder.write("good.csv", "time_s,position_m\n1,100\n2,110\n");
+  folder.write("bad.json", "{\"format\": \"other\"}");
+  folder.write("deep.json", std::string(100000, '['));
+  folder.write("plain.toml", kStudy.substr(0, kStudy.find("[trackers.tuned]")).replace(kStudy.find("pairs"), 24, ""));
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {"check nowhere.toml", "nowhere.toml"},
+      {"check misspelt.toml", "misspelt.toml:4: rnus"},
+      {"check misspelt.toml", "did you mean \"runs\""},
+      {"check broken.toml", "broken.toml:1"},
+      {"compare small.toml", "truebearing train small.toml"},
+      {"track plain.toml text.csv", "text.csv:3"},
+      {"track plain.toml text.csv", "position_m"},
+      {"track plain.toml back.csv", "back.csv:4"},
+      {"track plain.toml bearings.csv", "position_m"},
+      {"track plain.toml nowhere.csv", "nowhere.csv"},
+      {"track plain.toml good.csv --json -", "truth"},
+      {"rules bad.json", "bad.json: format"},
+      {"rules deep.json", "64 levels"},
+      {"rules nowhere.json", "nowhere.json"},
+      {"simulate small.toml -o out", "small.toml"},
+      {"tune plain.toml", "tune"},
+      {"train plain.toml", "corrected"},
+      {"train small.toml --tracker plain", "plain"},
+      {"train small.toml --tracker nfn", "did you mean \"nfnn\""}};
+  for (const auto& [arguments, says] : cases) {
+    const Outcome outcome = run(folder, arguments);
+    EXPECT_EQ(outcome.status, 1) << arguments;
+    EXPECT_THAT(outcome.err, HasSubstr(says)) << arguments;
+    EXPECT_TRUE(is_one_line(outcome.err)) << arguments << "\n" << outcome.err;
+    EXPECT_THAT(outcome.err, ::testing::Not(HasSubstr("internal error"))) << arguments;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
+}
+
+TEST(Program, WorksFromScenarioToRules) {
+  const TemporaryFolder folder;
+  write_study(folder);
+  std::filesystem::remove(folder.path() / "small.parameters.toml");
+
+  const Outcome tuned = run(folder, "tune small.toml --quiet");
+  EXPECT_EQ(tuned.status, 0) << tuned.err;
+  EXPECT_EQ(tuned.err, "") << "quiet";
+  const Outcome trained = run(folder, "train small.toml --quiet --threads 1");
+  EXPECT_EQ(trained.status, 0) << trained.err;
+  EXPECT_EQ(trained.err, "");
+  const std::string parameters = folder.read("small.parameters.toml"), model = folder.read("small.nfnn.json");
+
+  EXPECT_EQ(run(folder, "check small.toml").status, 0);
+  const Outcome rules = run(folder, "rules small.nfnn.json");
+  EXPECT_EQ(rules.status, 0) << rules.err;
+  EXPECT_THAT(rules.out, AllOf(HasSubstr("1. IF"), HasSubstr("4. IF"), HasSubstr("validation")));
+
+  // The same bits again, on another number of threads.
+  EXPECT_EQ(run(folder, "tune small.toml --quiet -o again.toml --threads 2").status, 0);
+  EXPECT_EQ(run(folder, "train small.toml --quiet -o again.json --threads 2").status, 0);
+  EXPECT_EQ(folder.read("again.toml"), parameters);
+  EXPECT_EQ(folder.read("again.json"), model);
+
+  const auto compared = [&](const std::string& arguments) {
+    const Outcome outcome = run(folder, "compare small.toml --json - " + arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "") << "no progress where output is piped";
+    json report = json::parse(outcome.out);  // and nothing else
+    for (auto& [name, tracker] : report["trackers"].items()) tracker.erase("ns_per_step");
+    return report.dump(2);
+  };
+  const std::string one = compared("--threads 1");
+  EXPECT_EQ(compared("--threads 2"), one);
+  EXPECT_EQ(compared("--threads 8"), one);
+  EXPECT_NE(compared("--seed 6"), one);
+  EXPECT_EQ(json::parse(one)["trackers"].size(), 3u);
+
+  const Outcome afresh = run(folder, "compare small.toml --retrain --runs 5 --json report.json");
+  EXPECT_EQ(afresh.status, 0) << afresh.err;
+  EXPECT_THAT(afresh.out, HasSubstr("nfnn - tuned"));
+  EXPECT_EQ(json::parse(folder.read("report.json"))["runs"], 5);
+  EXPECT_EQ(folder.read("small.nfnn.json"), model) << "files are left alone";
+  EXPECT_EQ(folder.read("small.parameters.toml"), parameters);
+}
+
+std::string plain_study() {
+  std::string study = kStudy.substr(0, kStudy.find("[trackers.tuned]"));
+  return replaced(study, "pairs = [\"nfnn - tuned\"]\n", "");
+}
+
+TEST(Program, TracksWhatItSimulated) {
+  const TemporaryFolder folder;
+  write_study(folder, plain_study());
+  const Outcome simulated = run(folder, "simulate scenario.toml --seed 3 --runs 2 -o logs");
+  EXPECT_EQ(simulated.status, 0) << simulated.err;
+  EXPECT_EQ(simulated.out + simulated.err, "");
+  const std::string log = folder.read("logs/run_0001.csv");
+  EXPECT_THAT(log, HasSubstr("truth_position_m"));
+  EXPECT_EQ(run(folder, "simulate scenario.toml --seed 3 --runs 2 -o again").status, 0);
+  EXPECT_EQ(folder.read("again/run_0001.csv"), log);
+
+  const Outcome tracked = run(folder, "track small.toml logs/run_0001.csv -o steps.csv --json scores.json");
+  EXPECT_EQ(tracked.status, 0) << tracked.err;
+  EXPECT_THAT(tracked.out, AllOf(HasSubstr("40 measurements"), HasSubstr("NIS/expected")));
+  const StepLog steps = read_step_log(folder.path() / "steps.csv", "plain");
+  EXPECT_EQ(steps.records.size(), 40u);
+  EXPECT_TRUE(json::parse(folder.read("scores.json"))["trackers"]["plain"]["rmse"]["position_m"].is_number());
+
+  // From standard input, to standard output: the same steps and nothing else.
+  const Outcome piped = run(folder, "track small.toml - -o - < logs/run_0001.csv");
+  EXPECT_EQ(piped.status, 0) << piped.err;
+  EXPECT_EQ(piped.out, folder.read("steps.csv"));
+  const Outcome scores = run(folder, "track small.toml - --json - < logs/run_0001.csv");
+  EXPECT_EQ(scores.status, 0) << scores.err;
+  EXPECT_TRUE(json::parse(scores.out).contains("trackers"));
+}
+
+TEST(Program, MissingCellsAreCoastedAndCounted) {
+  const TemporaryFolder folder;
+  write_study(folder, plain_study());
+  folder.write("with.csv", "time_s,position_m\n1,100\n2,\n3,nan\n4,inf\n5,300\n5,300\n6,400\n");
+  folder.write("without.csv", "time_s,position_m\n1,100\n5,300\n6,400\n");
+  const Outcome with = run(folder, "track small.toml with.csv -o with_steps.csv");
+  EXPECT_EQ(with.status, 0) << with.err;
+  EXPECT_THAT(with.out, HasSubstr("6 measurements, 3 missing, 1 repeated rows dropped"));
+  EXPECT_EQ(run(folder, "track small.toml without.csv -o without_steps.csv").status, 0);
+  const StepLog a = read_step_log(folder.path() / "with_steps.csv"), b = read_step_log(folder.path() / "without_steps.csv");
+  ASSERT_EQ(a.records.size(), 6u);
+  ASSERT_EQ(b.records.size(), 3u);
+  for (const auto& [i, j] : {std::pair<std::size_t, std::size_t>{0, 0}, {4, 1}, {5, 2}}) {
+    EXPECT_EQ(a.records[i].x, b.records[j].x);
+    EXPECT_EQ(a.records[i].P, b.records[j].P);
+  }
+  EXPECT_EQ(a.records[2].status, StepStatus::coasted);
+}
+
+TEST(Program, WrongUnitIsReported) {
+  const TemporaryFolder folder;
+  write_study(folder, plain_study());
+  for (const double unit : {1e3, 1e-3}) {
+    std::ostringstream log;
+    log << "time_s,position_m\n";
+    for (int k = 1; k <= 20; ++k) log << k << ',' << unit * (5000.0 + 200.0 * k + (k % 3 - 1) * 3000.0) << '\n';
+    folder.write("log.csv", log.str());
+    const Outcome outcome = run(folder, "track small.toml log.csv");
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr("plain"), HasSubstr("another unit"))) << unit;
+  }
+}
+
+TEST(Program, FailedCommandLeavesItsOutputsAsTheyWere) {
+  const TemporaryFolder folder;
+  write_study(folder, plain_study());
+  folder.write("bad.csv", "time_s,position_m\n1,100\n2,ten\n");
+  folder.write("steps.csv", "the old steps");
+  folder.write("scores.json", "the old scores");
+  const int files = folder.files();
+  EXPECT_EQ(run(folder, "track small.toml bad.csv -o steps.csv --json scores.json").status, 1);
+  EXPECT_EQ(run(folder, "compare nowhere.toml --json scores.json").status, 1);
+  EXPECT_EQ(run(folder, "train small.toml -o steps.csv").status, 1);
+  EXPECT_EQ(run(folder, "tune small.toml -o steps.csv").status, 1);
+  EXPECT_EQ(folder.read("steps.csv"), "the old steps");
+  EXPECT_EQ(folder.read("scores.json"), "the old scores");
+  EXPECT_EQ(folder.files(), files) << "nothing is left behind";
+}
+
+TEST(Program, OutputThatCannotBeWrittenIsStatus1) {
+  const TemporaryFolder folder;
+  write_study(folder, plain_study());
+  for (const char* arguments : {"compare small.toml --runs 2 --json nowhere/report.json", "simulate scenario.toml -o small.toml",
+                                "compare small.toml --runs 2 --json - > /dev/full", "check small.toml > /dev/full"}) {
+    const Outcome outcome = run(folder, arguments);
+    EXPECT_EQ(outcome.status, 1) << arguments;
+    EXPECT_TRUE(is_one_line(outcome.err)) << arguments << "\n" << outcome.err;
+    EXPECT_THAT(outcome.err, ::testing::Not(HasSubstr("internal error"))) << arguments;
+  }
+}
+
+}  // namespace
+}  // namespace truebearing

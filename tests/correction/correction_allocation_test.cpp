@@ -1,0 +1,173 @@
+// A corrected tracker that runs allocates nothing. Every allocation goes through malloc in the end: operator new, Eigen, the
+// library's own code however it was compiled. So that is where they are counted.
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <cstdlib>
+#include <string>
+
+#include "tests/support/correction_models.hpp"
+#include "tests/support/line_trackers.hpp"
+#include "truebearing/correction/corrected_tracker.hpp"
+#include "truebearing/evaluation/tracker_set.hpp"
+#include "truebearing/tracker/filter_bank.hpp"
+
+namespace {
+thread_local long allocations = 0;
+}
+
+#ifdef __SANITIZE_ADDRESS__
+// The sanitizer's allocator cannot be replaced; it tells of every allocation instead.
+extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*malloc_hook)(const volatile void*, std::size_t),
+                                                         void (*free_hook)(const volatile void*));
+namespace {
+[[maybe_unused]] const int hooks = __sanitizer_install_malloc_and_free_hooks(
+    [](const volatile void*, std::size_t) { ++allocations; }, [](const volatile void*) {});
+}
+#else
+extern "C" {
+void* __libc_malloc(std::size_t size);
+void* __libc_calloc(std::size_t count, std::size_t size);
+void* __libc_realloc(void* memory, std::size_t size);
+
+void* malloc(std::size_t size) {
+  ++allocations;
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t count, std::size_t size) {
+  ++allocations;
+  return __libc_calloc(count, size);
+}
+void* realloc(void* memory, std::size_t size) {
+  ++allocations;
+  return __libc_realloc(memory, size);
+}
+}
+#endif
+
+namespace truebearing {
+namespace {
+
+using testing::kNaN;
+using testing::position;
+using testing::radar_log;
+using testing::RadarFilter;
+
+template <typename Action>
+long allocations_of(const Action& action) {
+  const long before = allocations;
+  action();
+  return allocations - before;
+}
+
+// What keeps the tests below honest: each way to the heap is seen.
+TEST(Allocation, IsCounted) {
+  std::string text;
+  Eigen::VectorXd vector;
+  double* number = nullptr;
+  EXPECT_GT(allocations_of([&] { text.assign(100, 'x'); }), 0);
+  EXPECT_GT(allocations_of([&] { vector.resize(100); }), 0);
+  EXPECT_GT(allocations_of([&] { number = new double(1.0); }), 0);
+  EXPECT_EQ(allocations_of([&] { *number += vector[0]; }), 0);
+  delete number;
+}
+
+std::vector<Measurement> troubled_log() {
+  std::vector<Measurement> log;
+  for (Measurement measurement : radar_log(1, 240)) {
+    const int k = static_cast<int>(measurement.time_s);
+    if (k % 9 == 0) measurement.z[0] = kNaN;
+    if (k % 31 == 0) measurement.z[0] = 1e308;
+    log.push_back(measurement);
+    if (k % 7 == 0) log.push_back(measurement);
+    if (k % 17 == 0) log.push_back(position(measurement.time_s - 3.0, 0.0));
+  }
+  return log;
+}
+
+Ensemble radar_ensemble() {
+  Ensemble ensemble;
+  RadarFilter radar;
+  radar.options = {.gate_nis = 9.0, .lost_after_s = 20.0};
+  ensemble.add("plain", radar.tracker());
+  radar.variance = {1e6, 5e4};
+  ensemble.add("tuned", radar.tracker());
+  ensemble.add("wide", radar.tracker());
+  return ensemble;
+}
+
+std::shared_ptr<const CorrectionModel> radar_model() {
+  RandomStream random({}, StreamId::test);
+  CorrectionModel model =
+      testing::line_model(testing::radar_features(), testing::random_parameters(random, 4, 16, 2), "plain", "tuned", "wide");
+  model.kappa = 3.0;
+  model.gate = testing::box(4, -3.0, 6.0);
+  return testing::shared(model);
+}
+
+// The first pass warms up, with everything in it that can happen; the second must do without the heap.
+long allocations_of_second_pass(Tracker& tracker) {
+  const std::vector<Measurement> log = troubled_log();
+  for (const Measurement& measurement : log) tracker.step(measurement);
+  tracker.reset();
+  for (int k = 0; k < 5; ++k) tracker.step(log[static_cast<std::size_t>(k)]);
+  return allocations_of([&] {
+    for (std::size_t k = 5; k < log.size(); ++k) tracker.step(log[k]);
+  });
+}
+
+TEST(CorrectedTracker, StepsAllocateNothing) {
+  CorrectedTracker tracker(radar_ensemble(), radar_model());
+  EXPECT_EQ(allocations_of_second_pass(tracker), 0);
+}
+
+TEST(FilterTracker, StepsAllocateNothing) {
+  RadarFilter radar;
+  radar.options = {.gate_nis = 9.0, .lost_after_s = 20.0};
+  EXPECT_EQ(allocations_of_second_pass(*radar.tracker()), 0);
+}
+
+TEST(FilterBank, StepsAllocateNothing) {
+  using Bank = FilterBank<KalmanFilter<2>, testing::RadarMotion, PositionSensor<1>>;
+  const RadarFilter radar;
+  Bank bank(line_space(), {10, Bank::Hypothesis{radar.filter(), radar.motion(), radar.sensor()}});
+  EXPECT_EQ(allocations_of_second_pass(bank), 0);
+}
+
+// A tracker that allocates in its steps must be caught, wherever it sits.
+class WastefulTracker final : public Tracker {
+ public:
+  std::span<const StepRecord> step(const Measurement& measurement) override {
+    const Eigen::MatrixXd square = Eigen::MatrixXd::Constant(20, 20, measurement.time_s);
+    record_.time_s = square.trace();
+    return {&record_, 1};
+  }
+  void reset() override {}
+  std::unique_ptr<Tracker> clone() const override { return std::make_unique<WastefulTracker>(); }
+  const StateSpace& space() const override { return line_space(); }
+
+ private:
+  StepRecord record_;
+};
+
+TEST(Allocation, OfATrackerThatAllocatesIsCaught) {
+  WastefulTracker tracker;
+  EXPECT_GE(allocations_of_second_pass(tracker), 240);
+}
+
+TEST(TrackerSet, StepsAllocateNothing) {
+  TrackerSet set(radar_ensemble());
+  set.show_member("plain");
+  set.show_correction("nfnn", radar_model());
+  const std::vector<Measurement> log = troubled_log();
+  for (const Measurement& measurement : log) set.step(measurement);
+  set.reset();
+  for (int k = 0; k < 5; ++k) set.step(log[static_cast<std::size_t>(k)]);
+  EXPECT_EQ(allocations_of([&] {
+              for (std::size_t k = 5; k < log.size(); ++k) set.step(log[k]);
+            }),
+            0);
+}
+
+}  // namespace
+}  // namespace truebearing

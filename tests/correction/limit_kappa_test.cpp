@@ -1,0 +1,109 @@
+#include "truebearing/correction/limit_kappa.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+
+#include <array>
+
+#include "tests/support/line_trackers.hpp"
+
+namespace truebearing {
+namespace {
+
+using testing::kInfinity;
+using testing::kNaN;
+
+BoundedMatrix random_covariance(RandomStream& random, Eigen::Index n, double decades) {
+  const BoundedMatrix A = BoundedMatrix::NullaryExpr(n, n, [&] { return random.normal(); });
+  const BoundedVector scale = BoundedVector::NullaryExpr(n, [&] { return std::pow(10.0, random.uniform(-decades, decades)); });
+  return scale.asDiagonal() * (A * A.transpose() + 0.05 * BoundedMatrix::Identity(n, n)) * scale.asDiagonal();
+}
+
+// The distance in twice the digits, for covariances that are well enough conditioned for double to be held to it.
+double exact_distance(const BoundedMatrix& P, const BoundedVector& d) {
+  using Long = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
+  const Long long_P = P.cast<long double>();
+  const Long long_d = d.cast<long double>();
+  const Eigen::LLT<Long> cholesky(long_P);
+  const Long whitened = cholesky.matrixL().solve(long_d);
+  return static_cast<double>(whitened.norm());
+}
+
+TEST(LimitKappa, ShortCorrectionPassesUnchanged) {
+  const BoundedMatrix P = BoundedVector(Eigen::Vector2d(100.0, 4.0)).asDiagonal();
+  const BoundedVector d = Eigen::Vector2d(10.0, -2.0);
+  const Limited limited = limit_kappa(P, d, 3.0);
+  EXPECT_FALSE(limited.limited);
+  EXPECT_EQ(limited.d, d);
+  EXPECT_DOUBLE_EQ(limited.distance_sigmas, std::sqrt(2.0));
+}
+
+TEST(LimitKappa, LongCorrectionKeepsItsDirection) {
+  const BoundedMatrix P = BoundedVector(Eigen::Vector2d(100.0, 4.0)).asDiagonal();
+  const Limited limited = limit_kappa(P, BoundedVector(Eigen::Vector2d(300.0, -80.0)), 3.0);  // 50 standard deviations
+  EXPECT_TRUE(limited.limited);
+  EXPECT_NEAR(limited.d[0], 18.0, 1e-12);
+  EXPECT_NEAR(limited.d[1], -4.8, 1e-12);
+  EXPECT_EQ(limited.distance_sigmas, 3.0);
+}
+
+TEST(LimitKappa, InfiniteKappaLeavesAFiniteCorrectionAlone) {
+  const BoundedMatrix indefinite = -BoundedMatrix::Identity(2, 2);
+  const BoundedVector d = Eigen::Vector2d(1e300, -1.0);
+  EXPECT_EQ(limit_kappa(indefinite, d, kInfinity).d, d);
+  EXPECT_TRUE(limit_kappa(indefinite, BoundedVector(Eigen::Vector2d(kNaN, 1.0)), kInfinity).d.isZero(0.0));
+}
+
+TEST(LimitKappa, CovarianceThatIsNoneAllowsNothing) {
+  for (const double variance : {-1.0, 0.0, kNaN}) {
+    const BoundedMatrix P = BoundedVector(Eigen::Vector2d(1.0, variance)).asDiagonal();
+    const Limited limited = limit_kappa(P, BoundedVector(Eigen::Vector2d(1.0, 1.0)), 3.0);
+    EXPECT_TRUE(limited.d.isZero(0.0)) << variance;
+    EXPECT_TRUE(limited.limited);
+    EXPECT_EQ(limited.distance_sigmas, 0.0);
+  }
+}
+
+// Whatever goes in: what comes out is finite and at most kappa standard deviations long.
+TEST(LimitKappa, NothingPassesTheBound) {
+  RandomStream random({.seed = 21}, StreamId::test);
+  const std::array<double, 12> hostile{kNaN,  kInfinity, -kInfinity, 1.7e308, -1e308, 1e200,
+                                       1e154, 1e-154,    1e-308,     5e-324,  0.0,    -1e-200};
+  int limited_cases = 0, exact_cases = 0;
+  for (int k = 0; k < 100000; ++k) {
+    const auto n = static_cast<Eigen::Index>(1 + random.index(kMaxDimension));
+    const double kappa = std::pow(10.0, random.uniform(-3.0, 3.0));
+    BoundedMatrix P = random_covariance(random, n, k % 2 == 0 ? 1.0 : 8.0);
+    BoundedVector d = BoundedVector::NullaryExpr(n, [&] { return random.normal(); });
+    d *= std::pow(10.0, random.uniform(-3.0, 6.0));
+    const bool tame = k % 4 == 0;
+    if (!tame) {
+      const double kind = random.uniform();
+      if (kind < 0.4) d[static_cast<Eigen::Index>(random.index(static_cast<std::uint64_t>(n)))] = hostile[random.index(12)];
+      if (kind > 0.3 && kind < 0.5) d *= hostile[3 + random.index(9)];
+      if (kind > 0.5 && kind < 0.6) P(n - 1, n - 1) *= -1.0;                     // indefinite
+      if (kind > 0.6 && kind < 0.7) P.row(0) = P.row(n - 1), P.col(0) = P.col(n - 1);  // singular, up to rounding
+      if (kind > 0.7 && kind < 0.8) P *= hostile[3 + random.index(9)];
+      if (kind > 0.8 && kind < 0.85) P(0, n - 1) = P(n - 1, 0) = hostile[random.index(12)];
+      if (kind > 0.85 && kind < 0.9) P(n - 1, 0) += 1.0;  // asymmetric
+    }
+    const Limited limited = limit_kappa(P, d, kappa);
+    ASSERT_EQ(limited.d.size(), n);
+    ASSERT_TRUE(limited.d.allFinite()) << k << "\n" << P << "\n" << d;
+    ASSERT_LE(limited.distance_sigmas, kappa * (1.0 + 1e-9)) << k;
+    const double distance = std::sqrt(mahalanobis_squared(P, limited.d));
+    ASSERT_TRUE(limited.d.isZero(0.0) || distance <= kappa * (1.0 + 1e-9)) << k << ": " << distance << "\n" << P << "\n" << d;
+    if (tame) {
+      ASSERT_LE(exact_distance(P, limited.d), kappa * (1.0 + 1e-9)) << k;
+      ++exact_cases;
+    }
+    limited_cases += limited.limited ? 1 : 0;
+  }
+  EXPECT_GT(limited_cases, 20000);
+  EXPECT_LT(limited_cases, 95000) << "the bound must not be kept by allowing nothing";
+  EXPECT_EQ(exact_cases, 25000);
+}
+
+}  // namespace
+}  // namespace truebearing

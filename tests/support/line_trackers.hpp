@@ -1,0 +1,71 @@
+// Trackers, measurements and logs on a line: the small cast that the tests of several rooms share.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "truebearing/core/random.hpp"
+#include "truebearing/core/state_space.hpp"
+#include "truebearing/filter/kalman.hpp"
+#include "truebearing/motion/constant_velocity.hpp"
+#include "truebearing/simulation/line_scenario.hpp"
+#include "truebearing/tracker/filter_tracker.hpp"
+#include "truebearing/tracker/position_sensor.hpp"
+
+namespace truebearing::testing {
+
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+using RadarMotion = ConstantVelocity<1, FixedNoise<2>>;
+using RadarTracker = FilterTracker<KalmanFilter<2>, RadarMotion, PositionSensor<1>>;
+
+/// The filter of the 1-D radar studies, number by number.
+struct RadarFilter {
+  Eigen::Vector2d x0 = Eigen::Vector2d::Zero();
+  Eigen::Vector2d variance{999.0, 999.0};
+  Eigen::Vector2d noise_variance{5.0, 0.1};
+  double sigma_m = std::sqrt(1e7);
+  FilterTrackerOptions options = {};
+
+  RadarMotion motion() const { return {{noise_variance.asDiagonal(), 1.0}}; }
+  PositionSensor<1> sensor() const { return {Eigen::Matrix<double, 1, 1>(sigma_m), 1.0}; }
+  KalmanFilter<2> filter() const { return {x0, variance.asDiagonal()}; }
+  std::unique_ptr<RadarTracker> tracker() const {
+    return std::make_unique<RadarTracker>(line_space(), motion(), sensor(),
+                                          PriorStart<2>{x0, variance.asDiagonal(), 0.0}, options);
+  }
+};
+
+inline Measurement position(double time_s, double z_m) {
+  return {.time_s = time_s, .z = BoundedVector::Constant(1, z_m), .sigma = {}, .sensor = {}};
+}
+
+/// A target drawn from the 1-D radar family, measured every second.
+inline LineScenario radar_family(int steps) {
+  LineParameters parameters;
+  parameters.steps = steps;
+  parameters.position_m = Distribution(Distribution::Kind::normal, {0.0, 1000.0});
+  parameters.velocity_mps = Distribution(Distribution::Kind::uniform, {-400.0, 400.0});
+  parameters.process_noise_variance = {5.0, 0.1};
+  parameters.process_noise_scale = Distribution(Distribution::Kind::log_uniform, {0.25, 4.0});
+  parameters.noise = Distribution(Distribution::Kind::log_uniform, {2.5e6, 4e7});
+  parameters.noise_is_variance = true;
+  return LineScenario(parameters);
+}
+
+inline std::vector<Measurement> radar_log(std::uint64_t run, int steps) {
+  return radar_family(steps).simulate({.seed = 7, .role = Role::evaluation, .run = run}).measurements;
+}
+
+/// The record of a tracker of one target after all of these measurements.
+inline StepRecord last_record(Tracker& tracker, const std::vector<Measurement>& measurements) {
+  StepRecord last;
+  for (const Measurement& measurement : measurements)
+    if (const auto records = tracker.step(measurement); !records.empty()) last = records.front();
+  return last;
+}
+
+}  // namespace truebearing::testing

@@ -1,0 +1,157 @@
+#include "truebearing/tracker/step_log.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "tests/support/error_message.hpp"
+#include "tests/support/line_trackers.hpp"
+
+namespace truebearing {
+namespace {
+
+using testing::error_message;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using testing::kNaN;
+using testing::position;
+using testing::radar_log;
+using testing::RadarFilter;
+
+StepLog parse(const std::string& text, const std::string& tracker = {}) {
+  std::istringstream stream(text);
+  return read_step_log(stream, "steps.csv", tracker);
+}
+
+std::string error_of(const std::string& text, const std::string& tracker = {}) {
+  return error_message([&] { parse(text, tracker); });
+}
+
+std::vector<StepRecord> records_of_a_tracker() {
+  RadarFilter radar;
+  radar.options = {.gate_nis = 3.0, .lost_after_s = 4.0};
+  const auto tracker = radar.tracker();
+  std::vector<StepRecord> records;
+  for (Measurement measurement : radar_log(11, 40)) {
+    const int k = static_cast<int>(measurement.time_s);
+    if (k % 7 == 0 || (k > 20 && k < 30)) measurement.z[0] = kNaN;
+    records.push_back(tracker->step(measurement)[0]);
+  }
+  return records;
+}
+
+TEST(StepLog, WhatIsWrittenReadsBackToTheBit) {
+  StepLogWriter writer(line_space(), 1);
+  const std::vector<StepRecord> records = records_of_a_tracker();
+  for (const StepRecord& record : records) {
+    writer.add("plain", record);
+    writer.add("other, \"quoted\"", record);
+  }
+  for (const std::string tracker : {"plain", "other, \"quoted\""}) {
+    const StepLog log = parse(writer.str(), tracker);
+    EXPECT_EQ(log.space, &line_space());
+    EXPECT_TRUE(log.has_innovation);
+    ASSERT_EQ(log.records.size(), records.size());
+    for (std::size_t i = 0; i < records.size(); ++i) {
+      const StepRecord &read = log.records[i], &written = records[i];
+      EXPECT_EQ(read.track, written.track);
+      EXPECT_EQ(read.time_s, written.time_s);
+      EXPECT_EQ(read.status, written.status);
+      EXPECT_EQ(read.x, written.x);
+      EXPECT_EQ(read.P, written.P);
+      ASSERT_EQ(read.innovation.has_value(), written.innovation.has_value()) << i;
+      if (!read.innovation) continue;
+      EXPECT_EQ(read.innovation->z, written.innovation->z);
+      EXPECT_EQ(read.innovation->nu, written.innovation->nu);
+      EXPECT_EQ(read.innovation->S, written.innovation->S);
+      EXPECT_NEAR(read.innovation->nis, written.innovation->nis, 1e-12 * (1.0 + written.innovation->nis));
+    }
+  }
+}
+
+TEST(StepLog, WrittenAgainItIsTheSameText) {
+  StepLogWriter writer(line_space(), 1);
+  for (const StepRecord& record : records_of_a_tracker()) writer.add("plain", record);
+  StepLogWriter again(line_space(), 1);
+  for (const StepRecord& record : parse(writer.str()).records) again.add("plain", record);
+  EXPECT_EQ(again.str(), writer.str());
+}
+
+const std::string kHeader = "time_s,track,x_position_m,x_velocity_mps,P_1_1,P_1_2,P_2_2\n";
+
+TEST(StepLog, OfAnotherProgramNeedsOnlyStateAndCovariance) {
+  const StepLog log = parse(kHeader + "1,0,10,2,4,1,9\n2,0,12,2,4,1,9\n2,1,-5,0,4,0,9\n");
+  EXPECT_FALSE(log.has_innovation);
+  ASSERT_EQ(log.records.size(), 3u);
+  EXPECT_EQ(log.records[0].x, Eigen::Vector2d(10.0, 2.0));
+  EXPECT_EQ(log.records[0].P(1, 0), 1.0);
+  EXPECT_EQ(log.records[0].status, StepStatus::ok);
+  EXPECT_EQ(log.records[2].track, 1);
+  EXPECT_FALSE(log.records[0].innovation);
+}
+
+TEST(StepLog, StateOfItsOwnBecomesAStateSpace) {
+  const StepLog log = parse("time_s,track,x_range_m,P_1_1\n1,0,10,4\n");
+  EXPECT_EQ(log.space->components, std::vector<std::string>{"range_m"});
+}
+
+TEST(StepLog, DecreasingTimeIsNamedWithItsLine) {
+  EXPECT_THAT(error_of(kHeader + "1,0,10,2,4,1,9\n3,0,10,2,4,1,9\n2,0,12,2,4,1,9\n"),
+              AllOf(HasSubstr("steps.csv:4"), HasSubstr("time_s"), HasSubstr("2 after 3")));
+}
+
+TEST(StepLog, TimeThatIsNoNumberIsRefused) {
+  EXPECT_THAT(error_of(kHeader + "1,0,10,2,4,1,9\n,0,12,2,4,1,9\n"), HasSubstr("steps.csv:3"));
+}
+
+TEST(StepLog, CovarianceThatIsNoneIsRefused) {
+  for (const char* P : {"4,100,9", "-4,0,9", "4,1,nan", "4,1,", "0,1,9"})
+    EXPECT_THAT(error_of(kHeader + "1,0,10,2,4,1,9\n2,0,10,2," + P + "\n"),
+                AllOf(HasSubstr("steps.csv:3"), HasSubstr("positive semi-definite")))
+        << P;
+}
+
+TEST(StepLog, StateThatIsNotFiniteIsRefused) {
+  EXPECT_THAT(error_of(kHeader + "1,0,nan,2,4,1,9\n"), AllOf(HasSubstr("steps.csv:2"), HasSubstr("finite")));
+}
+
+TEST(StepLog, MissingColumnsAreListed) {
+  EXPECT_THAT(error_of("track,x_position_m,P_1_1\n0,1,1\n"), HasSubstr("time_s"));
+  EXPECT_THAT(error_of("time_s,x_position_m,P_1_1\n0,1,1\n"), HasSubstr("track"));
+  EXPECT_THAT(error_of("time_s,track,P_1_1\n0,0,1\n"), HasSubstr("x_<component>"));
+  EXPECT_THAT(error_of("time_s,track,x_position_m,x_velocity_mps,P_1_1,P_2_2\n"), HasSubstr("P_1_1 to P_2_2"));
+}
+
+TEST(StepLog, TextWhereANumberBelongsIsRefused) {
+  EXPECT_THAT(error_of(kHeader + "1,0,ten,2,4,1,9\n"), AllOf(HasSubstr("steps.csv:2"), HasSubstr("x_position_m")));
+  for (const char* track : {"0.5", "-1", "nan", "1e30"})
+    EXPECT_THAT(error_of(kHeader + "1," + track + ",10,2,4,1,9\n"), AllOf(HasSubstr("steps.csv:2"), HasSubstr("track")));
+  EXPECT_THAT(error_of("time_s,track,status,x_range_m,P_1_1\n1,0,fine,10,4\n"), HasSubstr("coasted"));
+}
+
+TEST(StepLog, TrackerThatIsNotInItIsRefused) {
+  EXPECT_THAT(error_of(kHeader + "1,0,10,2,4,1,9\n", "mine"), AllOf(HasSubstr("mine"), HasSubstr("tracker")));
+  EXPECT_THAT(error_of("time_s,tracker,track,x_range_m,P_1_1\n1,theirs,0,10,4\n", "mine"), HasSubstr("mine"));
+  EXPECT_THAT(error_of(kHeader), HasSubstr("no rows"));
+}
+
+TEST(StepLog, TooManyComponentsAreRefused) {
+  std::string header = "time_s,track", row = "1,0";
+  for (int i = 1; i <= 9; ++i) {
+    header += ",x_c" + std::to_string(i);
+    row += ",1";
+  }
+  EXPECT_THAT(error_of(header + "\n" + row + "\n"), HasSubstr("1 to 8"));
+  header = "time_s,track,x_range_m,P_1_1";
+  row = "1,0,1,1";
+  for (const char* name : {"z", "nu"})
+    for (int i = 1; i <= 9; ++i) {
+      header += "," + std::string(name) + "_" + std::to_string(i);
+      row += ",1";
+    }
+  EXPECT_THAT(error_of(header + "\n" + row + "\n"), HasSubstr("at most 8"));
+}
+
+}  // namespace
+}  // namespace truebearing

@@ -1,0 +1,162 @@
+#include "training/teacher.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/support/correction_models.hpp"
+#include "tests/support/error_message.hpp"
+#include "tests/support/line_trackers.hpp"
+
+namespace truebearing {
+namespace {
+
+using testing::error_message;
+using ::testing::HasSubstr;
+using testing::kNaN;
+using testing::RadarFilter;
+
+Ensemble ensemble() {
+  Ensemble made;
+  RadarFilter radar;
+  made.add("plain", radar.tracker());
+  radar.variance = {1e6, 5e4};
+  made.add("wide", radar.tracker());
+  return made;
+}
+
+CorrectionSpec spec(std::size_t runs) {
+  CorrectionSpec made;
+  made.base = made.reference = "plain";
+  made.covariance_of = "wide";
+  made.features = testing::radar_features();
+  made.training.runs = runs;
+  return made;
+}
+
+// A scenario with another truth, or none, beside the same measurements.
+class OtherTruth final : public Scenario {
+ public:
+  OtherTruth(const Scenario& scenario, double offset, double from_step = 0) : scenario_(scenario), offset_(offset), from_(from_step) {}
+  Recording simulate(const RunKey& key) const override {
+    Recording recording = scenario_.simulate(key);
+    for (std::size_t k = 0; k < recording.truth[0].x.size(); ++k)
+      if (static_cast<double>(k) >= from_) recording.truth[0].x[k].array() += offset_;
+    return recording;
+  }
+  const StateSpace& truth_space() const override { return scenario_.truth_space(); }
+
+ private:
+  const Scenario& scenario_;
+  double offset_;
+  double from_;
+};
+
+class KeysSeen final : public Scenario {
+ public:
+  explicit KeysSeen(const Scenario& scenario) : scenario_(scenario) {}
+  Recording simulate(const RunKey& key) const override {
+    keys.insert({static_cast<std::uint64_t>(key.role), key.seed, key.run});
+    return scenario_.simulate(key);
+  }
+  const StateSpace& truth_space() const override { return scenario_.truth_space(); }
+  mutable std::set<std::vector<std::uint64_t>> keys;
+
+ private:
+  const Scenario& scenario_;
+};
+
+TEST(Teacher, RowsAreTruthMinusTheBaseStepByStep) {
+  const LineScenario scenario = testing::radar_family(12);
+  const TeacherSet set = collect_teacher_set(ensemble(), spec(3), scenario, {.seed = 9, .role = Role::training, .threads = 1, .progress = {}});
+  ASSERT_EQ(set.X.rows(), 36);
+  ASSERT_EQ(set.X.cols(), 4);
+  ASSERT_EQ(set.Y.cols(), 2);
+  EXPECT_EQ(set.features, testing::radar_features());
+  const auto plain = RadarFilter{}.tracker();
+  RadarFilter wide_filter;
+  wide_filter.variance = {1e6, 5e4};
+  const auto wide = wide_filter.tracker();
+  Eigen::Index row = 0;
+  for (std::uint64_t run = 0; run < 3; ++run) {
+    const Recording recording = scenario.simulate({.seed = 9, .role = Role::training, .run = run});
+    plain->reset();
+    wide->reset();
+    double nis_sum = 0.0;
+    for (std::size_t k = 0; k < 12; ++k, ++row) {
+      const StepRecord base = plain->step(recording.measurements[k])[0];
+      const StepRecord companion = wide->step(recording.measurements[k])[0];
+      nis_sum += base.innovation->nis;
+      const double steps = static_cast<double>(k + 1);
+      EXPECT_EQ(set.Y.row(row).transpose(), recording.truth[0].x[k] - base.x);
+      EXPECT_EQ(set.X(row, 0), std::log(steps));
+      EXPECT_EQ(set.X(row, 1), (companion.x[0] - base.x[0]) / 1000.0);
+      EXPECT_EQ(set.X(row, 2), (companion.x[1] - base.x[1]) / 100.0);
+      EXPECT_NEAR(set.X(row, 3), std::log(0.05 + nis_sum / steps), 1e-12);
+      const Eigen::Matrix2d factor = set.covariance_factors.row(row).reshaped(2, 2);
+      EXPECT_LT((factor * factor.transpose() - companion.P).norm(), 1e-12 * companion.P.norm());
+    }
+  }
+}
+
+TEST(Teacher, FeaturesDoNotDependOnTheTruth) {
+  const LineScenario scenario = testing::radar_family(30);
+  const TeacherSet set = collect_teacher_set(ensemble(), spec(5), scenario, {});
+  const TeacherSet other = collect_teacher_set(ensemble(), spec(5), OtherTruth(scenario, 1e6), {});
+  EXPECT_EQ(set.X, other.X);
+  EXPECT_EQ(set.covariance_factors, other.covariance_factors);
+  EXPECT_NE(set.Y, other.Y);
+}
+
+TEST(Teacher, StepsWithUnknownTruthAreLeftOut) {
+  const LineScenario scenario = testing::radar_family(30);
+  const TeacherSet set = collect_teacher_set(ensemble(), spec(4), OtherTruth(scenario, kNaN, 20), {});
+  EXPECT_EQ(set.X.rows(), 4 * 20);
+  EXPECT_TRUE(set.Y.allFinite());
+  EXPECT_THAT(error_message([&] { collect_teacher_set(ensemble(), spec(4), OtherTruth(scenario, kNaN), {}); }),
+              HasSubstr("no step"));
+}
+
+TEST(Teacher, FirstStepTaughtIsAsAskedButAveragesSeeAll) {
+  const LineScenario scenario = testing::radar_family(30);
+  CorrectionSpec late = spec(2);
+  late.training.from_step = 11;
+  const TeacherSet all = collect_teacher_set(ensemble(), spec(2), scenario, {});
+  const TeacherSet tail = collect_teacher_set(ensemble(), late, scenario, {});
+  ASSERT_EQ(tail.X.rows(), 2 * 20);
+  EXPECT_EQ(tail.X.topRows(20), all.X.middleRows(10, 20));
+}
+
+TEST(Teacher, RowsAreTheSameForAnyNumberOfThreads) {
+  const LineScenario scenario = testing::radar_family(30);
+  const TeacherSet one = collect_teacher_set(ensemble(), spec(20), scenario, {.threads = 1, .progress = {}});
+  for (const int threads : {2, 8}) {
+    const TeacherSet many = collect_teacher_set(ensemble(), spec(20), scenario, {.threads = threads, .progress = {}});
+    EXPECT_EQ(one.X, many.X);
+    EXPECT_EQ(one.Y, many.Y);
+  }
+}
+
+TEST(Teacher, DrawsItsOwnRoleOnly) {
+  const LineScenario scenario = testing::radar_family(5);
+  const KeysSeen training(scenario), validation(scenario);
+  collect_teacher_set(ensemble(), spec(10), training, {.seed = 3, .role = Role::training, .threads = 1, .progress = {}});
+  collect_teacher_set(ensemble(), spec(10), validation, {.seed = 3, .role = Role::validation, .threads = 1, .progress = {}});
+  EXPECT_EQ(training.keys.size(), 10u);
+  for (const auto& key : training.keys) {
+    EXPECT_EQ(key[0], static_cast<std::uint64_t>(Role::training));
+    EXPECT_FALSE(validation.keys.contains(key));
+  }
+}
+
+TEST(Teacher, TruthOfAnotherSpaceIsRefused) {
+  class PlaneTruth final : public Scenario {
+    Recording simulate(const RunKey&) const override { return {}; }
+    const StateSpace& truth_space() const override { return plane_space(); }
+  };
+  EXPECT_THAT(error_message([] { collect_teacher_set(ensemble(), spec(1), PlaneTruth(), {}); }), HasSubstr("plane"));
+}
+
+}  // namespace
+}  // namespace truebearing

@@ -1,0 +1,92 @@
+#include "training/train_correction.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/radar_study.hpp"
+#include "truebearing/correction/model_file.hpp"
+#include "truebearing/evaluation/comparison.hpp"
+
+namespace truebearing {
+namespace {
+
+using testing::kStudy;
+using testing::replaced;
+using testing::TemporaryFolder;
+using testing::write_study;
+
+CorrectionModel train(const Study& study, std::uint64_t seed, int threads, TrainReport* report = nullptr) {
+  TrainOptions options;
+  options.seed = seed;
+  options.threads = threads;
+  return train_correction(study, "nfnn", options, report);
+}
+
+TEST(TrainCorrection, SameSeedIsTheSameModelOnAnyNumberOfThreads) {
+  const TemporaryFolder folder;
+  const Study study = Study::load(write_study(folder));
+  const std::string one = model_text(train(study, 5, 1));
+  EXPECT_EQ(model_text(train(study, 5, 2)), one);
+  EXPECT_EQ(model_text(train(study, 5, 8)), one);
+  EXPECT_NE(model_text(train(study, 6, 1)), one);
+}
+
+TEST(TrainCorrection, ModelRemembersWhatItWasTrainedFor) {
+  const TemporaryFolder folder;
+  const Study study = Study::load(write_study(folder));
+  TrainReport report;
+  const CorrectionModel model = train(study, 5, 0, &report);
+  EXPECT_EQ(report.rows, 20 * 40);
+  EXPECT_EQ(model.base, "plain");
+  EXPECT_EQ(model.reference, "tuned");
+  EXPECT_EQ(model.covariance_of, "wide");
+  EXPECT_EQ(model.kappa, 3.0);
+  EXPECT_EQ(model.network.rules(), 4);
+  EXPECT_EQ(model.features, study.tracker("nfnn").correction->features);
+  EXPECT_EQ(model.trackers.size(), 3u);
+  EXPECT_EQ(model.trackers.at("tuned"), study.configuration_line("tuned"));
+  EXPECT_EQ(model.provenance.at("study"), "small");
+  EXPECT_EQ(model.provenance.at("training_runs"), "20");
+  EXPECT_EQ(model.provenance.at("training_rows"), "800");
+  EXPECT_NO_THROW(model.validate());
+  study.check_model("nfnn", model, "here");
+}
+
+TEST(TrainCorrection, MirroredBoxIsSymmetricInWhatAMirrorTurns) {
+  const TemporaryFolder folder;
+  const CorrectionModel model = train(Study::load(write_study(folder)), 5, 0);
+  ASSERT_TRUE(model.gate.has_value());
+  EXPECT_EQ(model.gate->low[0], 0.0) << "ln step, from the first";
+  EXPECT_DOUBLE_EQ(model.gate->high[0], std::log(40.0));
+  EXPECT_DOUBLE_EQ(model.gate->low[1], -model.gate->high[1]) << "the companion's difference";
+  EXPECT_NE(model.gate->low[2], -model.gate->high[2]) << "the NIS";
+}
+
+TEST(TrainCorrection, WithoutGateTheModelHasNone) {
+  const TemporaryFolder folder;
+  const Study study = Study::load(write_study(folder, replaced(kStudy, "kappa = 3.0", "gate = false")));
+  const CorrectionModel model = train(study, 5, 0);
+  EXPECT_FALSE(model.gate.has_value());
+  EXPECT_TRUE(std::isinf(model.kappa));
+}
+
+TEST(TrainCorrection, CorrectionTakesMostOfThePlainFiltersError) {
+  const TemporaryFolder folder;
+  const Study study = Study::load(write_study(folder));
+  const CorrectionModels models{{"nfnn", std::make_shared<const CorrectionModel>(train(study, 5, 0))}};
+  ComparisonOptions options = study.comparison_options();
+  options.runs = 100;
+  const Comparison comparison = compare(study.make_tracker_set(models), study.evaluation_scenarios(), options);
+  const QuantitySummary& plain = *comparison.tracker("plain")->quantity("velocity_mps");
+  const QuantitySummary& corrected = *comparison.tracker("nfnn")->quantity("velocity_mps");
+  EXPECT_LT(corrected.rmse + 4.0 * corrected.rmse_se, plain.rmse - 4.0 * plain.rmse_se);
+}
+
+TEST(TrainCorrection, ByBackPropagationIsTheSameToTheBitToo) {
+  const TemporaryFolder folder;
+  const Study study = Study::load(write_study(
+      folder, replaced(kStudy, "rules = 4\nruns = 20\niterations = 10", "method = \"back_propagation\"\nruns = 5\nepochs = 2")));
+  EXPECT_EQ(model_text(train(study, 5, 1)), model_text(train(study, 5, 4)));
+}
+
+}  // namespace
+}  // namespace truebearing

@@ -1,0 +1,132 @@
+#include "training/tune.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/error_message.hpp"
+#include "tests/support/radar_study.hpp"
+#include "tests/support/statistics.hpp"
+
+namespace truebearing {
+namespace {
+
+using testing::error_message;
+using ::testing::HasSubstr;
+using testing::kParameters;
+using testing::kStudy;
+using testing::replaced;
+using testing::TemporaryFolder;
+
+// A family whose R and Q are what they are, seen by a filter that believes other ones.
+const std::string kKnown = R"(kind = "line"
+period_s = 1.0
+steps = 150
+process_noise_variance = [100.0, 2500.0]
+
+[target]
+position_m = 0.0
+velocity_mps = 0.0
+
+[sensor]
+position_variance_m2 = 1e4
+)";
+
+const std::string kTune = R"(name = "known"
+scenario = "known.toml"
+
+[scoring]
+from_step = 30
+
+[tuning]
+runs = 60
+
+[trackers.filter]
+kind = "kalman"
+motion = { model = "constant_velocity", noise = "fixed", variance = [300.0, 250.0], period_s = 1.0 }
+measurement = { model = "position", variance_m2 = 2e3 }
+start = { kind = "prior", x = [0.0, 0.0], variance = [1.0, 1.0] }
+tune = ["motion.variance", "measurement.variance_m2"]
+)";
+
+Study known(const TemporaryFolder& folder, const std::string& study = kTune) {
+  folder.write("known.toml", kKnown);
+  return Study::load(folder.write("study.toml", study));
+}
+
+TunedValues tune(const Study& study, const std::string& name, int threads, TuneReport* report = nullptr, int evaluations = 160) {
+  TuneOptions options;
+  options.seed = 2;
+  options.threads = threads;
+  options.max_evaluations = evaluations;
+  return tune_tracker(study, name, options, report);
+}
+
+// The ratio of Q to R settles how good the estimates are, and the NEES settles the size of both.
+TEST(Tune, FindsTheNoisesThatMadeTheRuns) {
+  const TemporaryFolder folder;
+  TuneReport report;
+  const TunedValues values = tune(known(folder), "filter", 0, &report);
+  EXPECT_NEAR(std::log(values.at("measurement.variance_m2")[0] / 1e4), 0.0, 0.15);
+  EXPECT_NEAR(std::log(values.at("motion.variance")[1] / 2500.0), 0.0, 0.15);
+  EXPECT_LT(report.cost_after, report.cost_before);
+  EXPECT_GT(report.evaluations, 10);
+  EXPECT_LE(report.evaluations, 161);
+}
+
+// From either side, over seeds: the mean of ln(found / true) is zero within its interval, and no seed is far off.
+TEST(Tune, OneNumberAloneIsFoundWithoutBias) {
+  const TemporaryFolder folder;
+  const std::string right_q = replaced(kTune, "variance = [300.0, 250.0]", "variance = [100.0, 2500.0]");
+  const std::string text = replaced(replaced(right_q, "\"motion.variance\", ", ""), "runs = 60", "runs = 40");
+  const Study below = known(folder, replaced(text, "variance_m2 = 2e3", "variance_m2 = 1e3"));
+  const Study above = known(folder, replaced(text, "variance_m2 = 2e3", "variance_m2 = 1e5"));
+  std::vector<double> errors;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    TuneOptions options;
+    options.seed = seed;
+    options.max_evaluations = 50;
+    const double found = tune_tracker(seed % 2 == 0 ? below : above, "filter", options).at("measurement.variance_m2")[0];
+    errors.push_back(std::log(found / 1e4));
+    EXPECT_NEAR(errors.back(), 0.0, 0.25) << seed;
+  }
+  const testing::Moments moments = testing::moments(errors);
+  EXPECT_NEAR(moments.mean, 0.0, testing::mean_margin(std::sqrt(moments.variance), errors.size()));
+  EXPECT_LT(std::sqrt(moments.variance), 0.1);
+}
+
+TEST(Tune, CommonFactorIsSetByTheNees) {
+  const TemporaryFolder folder;
+  // Q, R and P0 tuned together: one factor on all of them changes no estimate.
+  const std::string all = replaced(kTune, "\"measurement.variance_m2\"]", "\"measurement.variance_m2\", \"start.variance\"]");
+  for (const char* start : {"variance_m2 = 2e3", "variance_m2 = 2e5"}) {
+    const Study study = known(folder, replaced(all, "variance_m2 = 2e3", start));
+    ParametersFile parameters;
+    parameters.trackers["filter"] = tune(study, "filter", 0, nullptr, 30);
+    Study tuned = known(folder, replaced(all, "variance_m2 = 2e3", start));
+    tuned.set_parameters(parameters);
+    ComparisonOptions options = tuned.comparison_options();
+    options.seed = 2;
+    options.role = Role::tuning;
+    options.runs = tuned.tuning_runs();
+    const Comparison comparison = compare(tuned.make_tracker_set(), tuned.evaluation_scenarios(), options);
+    EXPECT_NEAR(comparison.trackers[0].nees, 2.0, 1e-6) << start;
+  }
+}
+
+TEST(Tune, IsTheSameForAnyNumberOfThreads) {
+  const TemporaryFolder folder;
+  const Study study = Study::load(testing::write_study(folder));
+  const TunedValues one = tune(study, "tuned", 1, nullptr, 40);
+  EXPECT_EQ(tune(study, "tuned", 2, nullptr, 40), one);
+  EXPECT_EQ(tune(study, "tuned", 8, nullptr, 40), one);
+}
+
+TEST(Tune, WhatIsNotTunedIsRefused) {
+  const TemporaryFolder folder;
+  const Study study = Study::load(testing::write_study(folder));
+  EXPECT_THAT(error_message([&] { tune(study, "plain", 1); }), HasSubstr("nothing to tune"));
+  EXPECT_THAT(error_message([&] { tune(study, "tund", 1); }), HasSubstr("did you mean \"tuned\""));
+}
+
+}  // namespace
+}  // namespace truebearing

@@ -47,7 +47,8 @@ class RowMaker {
       extractor_.extract(base, companion_records_, row.features);  // every step, for the averages
       const StepRecord* reference = ensemble_.record(reference_, base.track);
       const StepRecord* source = ensemble_.record(source_, base.track);
-      if (static_cast<int>(step) + 1 < from_step_ || !reference || !source || base.status == StepStatus::failed) continue;
+      if (static_cast<int>(step) + 1 < from_step_ || !reference || !source || base.status == StepStatus::failed)
+        continue;
       row.label = recording.truth.front().x[step] - base.x;
       row.reference = reference->x - base.x;
       const Eigen::LLT<BoundedMatrix> covariance(source->P), reference_covariance(reference->P);
@@ -89,7 +90,8 @@ TeacherSet collect_teacher_set(const Ensemble& ensemble, const CorrectionSpec& c
                                const TeacherOptions& options) {
   const StateSpace& space = ensemble.tracker(ensemble.index(correction.base)).space();
   if (space != scenario.truth_space())
-    throw InputError("training", "the scenario's truth is " + scenario.truth_space().name + ", the base's state " + space.name,
+    throw InputError("training",
+                     "the scenario's truth is " + scenario.truth_space().name + ", the base's state " + space.name,
                      "the same state space");
   const std::size_t runs = correction.training.runs;
   std::vector<std::vector<Row>> by_run(runs);
@@ -104,10 +106,11 @@ TeacherSet collect_teacher_set(const Ensemble& ensemble, const CorrectionSpec& c
 
   Eigen::Index total = 0;
   for (const std::vector<Row>& rows : by_run) total += static_cast<Eigen::Index>(rows.size());
-  if (total == 0) throw InputError("training", "no step of the training runs can be taught", "records, truth and finite features");
+  if (total == 0)
+    throw InputError("training", "no step of the training runs can be taught", "records, truth and finite features");
   const Eigen::Index d = static_cast<Eigen::Index>(correction.features.size());
   const Eigen::Index n = space.size();
-  TeacherSet set{correction.features, Eigen::MatrixXd(total, d), Eigen::MatrixXd(total, n),
+  TeacherSet set{correction.features,       Eigen::MatrixXd(total, d),     Eigen::MatrixXd(total, n),
                  Eigen::MatrixXd(total, n), Eigen::MatrixXd(total, n * n), Eigen::MatrixXd(total, n * n)};
   Eigen::Index next = 0;
   for (const std::vector<Row>& rows : by_run)

@@ -1,5 +1,5 @@
-// The teacher: the same simulator, trackers and feature extractor as at run time, with the labels (truth minus estimate) joined
-// afterwards by time.
+// The teacher: the same simulator, trackers and feature extractor as at run time, with the labels (truth minus
+// estimate) joined afterwards by time.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,7 +20,8 @@ struct TeacherSet {
   Eigen::MatrixXd X;          ///< (N x d), features in their units
   Eigen::MatrixXd Y;          ///< (N x n), truth - base estimate
   Eigen::MatrixXd reference;  ///< (N x n), reference estimate - base estimate
-  /// Lower Cholesky factors, one (n n) to a row: of the covariance that the correction's own is made from, and of the reference's.
+  /// Lower Cholesky factors, one (n n) to a row: of the covariance that the correction's own is made from, and of the
+  /// reference's.
   Eigen::MatrixXd covariance_factors;
   Eigen::MatrixXd reference_factors;
 };
@@ -35,9 +36,9 @@ struct TeacherOptions {
   Progress progress;
 };
 
-/// Runs `ensemble`, which has the members that `correction` names, over correction.training.runs runs of the scenario. Steps without a
-/// record, with unknown truth or with features that are not finite are left out. Throws InputError where no step is left or
-/// the truth is of another space than the base's state.
+/// Runs `ensemble`, which has the members that `correction` names, over correction.training.runs runs of the scenario.
+/// Steps without a record, with unknown truth or with features that are not finite are left out. Throws InputError
+/// where no step is left or the truth is of another space than the base's state.
 TeacherSet collect_teacher_set(const Ensemble& ensemble, const CorrectionSpec& correction, const Scenario& scenario,
                                const TeacherOptions& options);
 

@@ -19,7 +19,8 @@ FuzzyTrainingData training_data(const TeacherSet& teacher, bool mirror) {
   return data;
 }
 
-TrainedFuzzyNetwork train_network(const FuzzyTrainingData& data, const TrainingSpec& spec, const TrainOptions& options) {
+TrainedFuzzyNetwork train_network(const FuzzyTrainingData& data, const TrainingSpec& spec,
+                                  const TrainOptions& options) {
   if (spec.method == TrainingSpec::Method::back_propagation) {
     BackPropagationOptions back_propagation;
     back_propagation.terms_per_input = spec.terms_per_input;
@@ -55,8 +56,8 @@ Eigen::MatrixXd outputs(const TeacherSet& teacher, const FuzzyNetwork& network) 
   return Y;
 }
 
-// The box of the training data; symmetric in the features that a mirrored target mirrors, where mirror images were taught. The
-// disagreement has no low side, and no limit where `disagreements` is empty.
+// The box of the training data; symmetric in the features that a mirrored target mirrors, where mirror images were
+// taught. The disagreement has no low side, and no limit where `disagreements` is empty.
 BoxGate box_gate(const FuzzyTrainingData& data, const Eigen::VectorXd& disagreements, const GateSpec& spec) {
   const Eigen::Index d = data.features.cols();
   BoxGate gate;
@@ -72,11 +73,13 @@ BoxGate box_gate(const FuzzyTrainingData& data, const Eigen::VectorXd& disagreem
     gate.high[i] = quantile_of(std::move(values), 1.0 - spec.quantile);
   }
   if (disagreements.size() > 0)
-    gate.largest_disagreement = quantile_of({disagreements.begin(), disagreements.end()}, 1.0 - spec.disagreement_quantile);
+    gate.largest_disagreement =
+        quantile_of({disagreements.begin(), disagreements.end()}, 1.0 - spec.disagreement_quantile);
   return gate;
 }
 
-Eigen::VectorXd disagreements(const TeacherSet& teacher, const Eigen::MatrixXd& corrections, const CorrectionModel& model) {
+Eigen::VectorXd disagreements(const TeacherSet& teacher, const Eigen::MatrixXd& corrections,
+                              const CorrectionModel& model) {
   const Eigen::Index n = teacher.Y.cols();
   Eigen::VectorXd values(teacher.X.rows());
   FuzzyNetwork::Strengths phi;
@@ -84,19 +87,21 @@ Eigen::VectorXd disagreements(const TeacherSet& teacher, const Eigen::MatrixXd& 
     model.network.strengths(FuzzyNetwork::Inputs(teacher.X.row(row).transpose()), phi);
     const BoundedMatrix source = teacher.covariance_factors.row(row).reshaped(n, n);
     const BoundedMatrix reference = teacher.reference_factors.row(row).reshaped(n, n);
-    values[row] = disagreement((corrections.row(row) - teacher.reference.row(row)).transpose(),
-                               phi.dot(model.inflation) * source * source.transpose(), reference * reference.transpose());
+    values[row] =
+        disagreement((corrections.row(row) - teacher.reference.row(row)).transpose(),
+                     phi.dot(model.inflation) * source * source.transpose(), reference * reference.transpose());
   }
   return values;
 }
 
 }  // namespace
 
-CorrectionModel train_correction(const Study& study, const std::string& name, const TrainOptions& options, TrainReport* report) {
+CorrectionModel train_correction(const Study& study, const std::string& name, const TrainOptions& options,
+                                 TrainReport* report) {
   const CorrectionSpec& spec = study.tracker(name).correction.value();
   const Ensemble ensemble = study.make_ensemble(spec.members());
-  const TeacherSet teacher =
-      collect_teacher_set(ensemble, spec, study.scenario(), {options.seed, Role::training, options.threads, options.teacher_progress});
+  const TeacherSet teacher = collect_teacher_set(
+      ensemble, spec, study.scenario(), {options.seed, Role::training, options.threads, options.teacher_progress});
   const FuzzyTrainingData data = training_data(teacher, spec.training.mirror);
   const auto begin = std::chrono::steady_clock::now();
   TrainedFuzzyNetwork trained = train_network(data, spec.training, options);
@@ -116,7 +121,8 @@ CorrectionModel train_correction(const Study& study, const std::string& name, co
   model.inflation = covariance_inflation(model.network, teacher.X, lengths.cwiseAbs2() / model.space->size());
   if (spec.gate) {
     const bool trusts_another = spec.reference != spec.base;
-    model.gate = box_gate(data, trusts_another ? disagreements(teacher, corrections, model) : Eigen::VectorXd(), *spec.gate);
+    model.gate =
+        box_gate(data, trusts_another ? disagreements(teacher, corrections, model) : Eigen::VectorXd(), *spec.gate);
   }
   model.usage = trained.usage;
   model.local_mean = trained.local_mean;

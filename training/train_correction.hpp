@@ -19,7 +19,7 @@ struct TrainOptions {
 
 struct TrainReport {
   Eigen::Index rows = 0;
-  double cost = 0.0;           ///< of the network on the teacher set, normalised
+  double cost = 0.0;              ///< of the network on the teacher set, normalised
   double training_seconds = 0.0;  ///< of the network alone
 };
 

@@ -25,7 +25,8 @@ class TunedTracker {
   TunedTracker(const Study& study, const TrackerSpec& spec) : study_(study), spec_(spec) {
     for (const std::string& path : spec.tune) {
       sizes_.push_back(numbers_at(spec.configuration, path, spec.name + ".tune").size());
-      for (const double value : numbers_at(spec.configuration, path, spec.name + ".tune")) start_.push_back(std::log(value));
+      for (const double value : numbers_at(spec.configuration, path, spec.name + ".tune"))
+        start_.push_back(std::log(value));
     }
   }
 
@@ -56,7 +57,8 @@ class TunedTracker {
 // Scores a tracker on the same recordings again and again.
 class TuningRuns {
  public:
-  TuningRuns(const Study& study, const TuneOptions& options) : study_(study), threads_(options.threads), recordings_(study.tuning_runs()) {
+  TuningRuns(const Study& study, const TuneOptions& options)
+      : study_(study), threads_(options.threads), recordings_(study.tuning_runs()) {
     monte_carlo(recordings_.size(), threads_, [&](std::size_t run, std::size_t) {
       recordings_[run] = study.scenario().simulate({options.seed, Role::tuning, run});
     });
@@ -109,7 +111,8 @@ void fix_common_factor(std::vector<double>& logarithms, const TunedTracker& trac
 
 TunedValues tune_tracker(const Study& study, const std::string& name, const TuneOptions& options, TuneReport* report) {
   const TrackerSpec& spec = study.tracker(name);
-  if (spec.tune.empty()) throw InputError(study.path().string() + ": trackers." + name, "has nothing to tune", "a key `tune`");
+  if (spec.tune.empty())
+    throw InputError(study.path().string() + ": trackers." + name, "has nothing to tune", "a key `tune`");
   const TunedTracker tracker(study, spec);
   const TuningRuns runs(study, options);
 
@@ -118,8 +121,10 @@ TunedValues tune_tracker(const Study& study, const std::string& name, const Tune
   std::function<double(const std::vector<double>&)> cost = [&](const std::vector<double>& logarithms) {
     const double value = cost_of(runs.score(*tracker.make(logarithms)));
     best = std::min(best, value);
-    if (options.progress) options.progress(++evaluations, options.max_evaluations, best);
-    else ++evaluations;
+    if (options.progress)
+      options.progress(++evaluations, options.max_evaluations, best);
+    else
+      ++evaluations;
     return value;
   };
   const double before = cost(tracker.start());

@@ -1,5 +1,5 @@
-// Tuning the baselines: the numbers that a study names under `tune` (Q, R, P0, ...) fitted to training draws, so that a correction
-// is compared with the best that its filter can do. Minimises the sum over scored quantities of ln RMSE.
+// Tuning the baselines: the numbers that a study names under `tune` (Q, R, P0, ...) fitted to training draws, so that a
+// correction is compared with the best that its filter can do. Minimises the sum over scored quantities of ln RMSE.
 #pragma once
 
 #include <string>
@@ -23,9 +23,11 @@ struct TuneReport {
   double cost_after = 0.0;
 };
 
-/// Fits tracker `name` on study.tuning_runs() runs of the role `tuning`. All numbers are positive and move in their logarithms, by
-/// Nelder and Mead's simplex with restarts (NLopt). Where multiplying all of them by one factor leaves the estimates as they
-/// are (Q, R and P0 of a Kalman filter), the factor is set so that the mean NEES is the dimension of the state.
-TunedValues tune_tracker(const Study& study, const std::string& name, const TuneOptions& options, TuneReport* report = nullptr);
+/// Fits tracker `name` on study.tuning_runs() runs of the role `tuning`. All numbers are positive and move in their
+/// logarithms, by Nelder and Mead's simplex with restarts (NLopt). Where multiplying all of them by one factor leaves
+/// the estimates as they are (Q, R and P0 of a Kalman filter), the factor is set so that the mean NEES is the dimension
+/// of the state.
+TunedValues tune_tracker(const Study& study, const std::string& name, const TuneOptions& options,
+                         TuneReport* report = nullptr);
 
 }  // namespace truebearing

@@ -23,7 +23,8 @@ void describe_correction(const Study& study, const TrackerSpec& spec) {
 
 void check(const std::string& path) {
   const Study study = Study::load(path);
-  fmt::print("{}: {} runs, seed {}, scored from step {}\n", study.name(), study.runs(), study.seed(), study.scoring().from_step);
+  fmt::print("{}: {} runs, seed {}, scored from step {}\n", study.name(), study.runs(), study.seed(),
+             study.scoring().from_step);
   for (const TrackerSpec& spec : study.trackers()) {
     fmt::print("  {} ({}{})\n", spec.name, spec.kind, spec.shown ? "" : ", not shown");
     if (spec.correction) {

@@ -27,7 +27,8 @@ struct Options {
 std::unique_ptr<Tracker> standalone(const Study& study, const std::string& name, const CorrectionModels& models) {
   const auto model = models.find(name);
   if (model == models.end()) return study.make_tracker(name);
-  return std::make_unique<CorrectedTracker>(study.make_ensemble(study.tracker(name).correction->members()), model->second);
+  return std::make_unique<CorrectedTracker>(study.make_ensemble(study.tracker(name).correction->members()),
+                                            model->second);
 }
 
 void run_compare(const Options& options, bool seed_given) {
@@ -58,7 +59,8 @@ void run_compare(const Options& options, bool seed_given) {
   comparison.study = study.name();
   const Recording timed = scenarios.front().scenario->simulate({seed, Role::evaluation, 0});
   for (int i = 0; i < trackers.size(); ++i)
-    comparison.ns_per_step.emplace_back(trackers.name(i), time_per_step_ns(*standalone(study, trackers.name(i), models), timed));
+    comparison.ns_per_step.emplace_back(trackers.name(i),
+                                        time_per_step_ns(*standalone(study, trackers.name(i), models), timed));
 
   if (options.json != "-") fmt::print("{}", comparison_table(comparison));
   if (!options.json.empty()) write_output(options.json, comparison_json(comparison));
@@ -68,10 +70,12 @@ void run_compare(const Options& options, bool seed_given) {
 
 void add_compare(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("compare", "run the study's trackers on held-out runs and compare their errors");
+  CLI::App* command =
+      app.add_subcommand("compare", "run the study's trackers on held-out runs and compare their errors");
   command->add_option("study", options->study, "study file (TOML)")->required();
   CLI::Option* seed = command->add_option("--seed", options->seed, "seed; the study's own where not given");
-  command->add_option("--runs", options->runs, "runs; the study's own number where not given")->check(CLI::Range(1, 10000000));
+  command->add_option("--runs", options->runs, "runs; the study's own number where not given")
+      ->check(CLI::Range(1, 10000000));
   command->add_option("--threads", options->threads, "0: one per core")->check(CLI::Range(0, 1024));
   command->add_option("--truth", options->truth, "a recorded track with truth, measured afresh in every run");
   command->add_flag("--retrain", options->retrain, "tune and train afresh with this seed; files are left alone");

@@ -10,8 +10,8 @@ namespace truebearing {
 /// Writes `text` to standard output where `path` is "-", else to that file, whole or not at all.
 void write_output(const std::string& path, const std::string& text);
 
-/// A line on the terminal that says how far long work is and how long it will still take. Silent where standard output or
-/// standard error is no terminal, or `quiet`.
+/// A line on the terminal that says how far long work is and how long it will still take. Silent where standard output
+/// or standard error is no terminal, or `quiet`.
 class ProgressLine {
  public:
   ProgressLine(std::string label, bool quiet);

@@ -29,7 +29,8 @@ void simulate(const Options& options) {
   ProgressLine progress("simulate", options.quiet);
   for (std::size_t run = 0; run < options.runs; ++run) {
     const Recording recording = scenario->simulate({options.seed, Role::evaluation, run});
-    write_file_atomically(std::filesystem::path(options.folder) / fmt::format("run_{:04}.csv", run), write_recording(recording));
+    write_file_atomically(std::filesystem::path(options.folder) / fmt::format("run_{:04}.csv", run),
+                          write_recording(recording));
     progress.show(run + 1, options.runs);
   }
 }

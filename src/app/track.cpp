@@ -1,5 +1,5 @@
-// truebearing track STUDY.toml LOG.csv: the study's trackers on a recorded log. With truth in the log, their errors; without, what
-// can still be said: NIS and its consistency, whiteness, rejected and missing measurements.
+// truebearing track STUDY.toml LOG.csv: the study's trackers on a recorded log. With truth in the log, their errors;
+// without, what can still be said: NIS and its consistency, whiteness, rejected and missing measurements.
 #include <algorithm>
 #include <fmt/format.h>
 #include <map>
@@ -27,7 +27,8 @@ void check_columns(const Study& study, const Recording& recording, const std::st
   const std::vector<std::string> wanted = study.scenario().simulate({study.seed(), Role::evaluation, 0}).measured;
   const auto joined = [](const std::vector<std::string>& names) { return fmt::format("{}", fmt::join(names, ", ")); };
   if (recording.measured != wanted)
-    throw InputError(log, "measures " + joined(recording.measured), joined(wanted) + ", which the study's trackers take");
+    throw InputError(log, "measures " + joined(recording.measured),
+                     joined(wanted) + ", which the study's trackers take");
 }
 
 // Writes the records of all trackers whose state is the first corrected or plain one's.
@@ -53,19 +54,25 @@ class TrackWriter {
 };
 
 void print_consistency(const TrackerSet& trackers, const std::vector<InnovationConsistency>& consistency) {
-  fmt::print("{:<14}{:>8}{:>24}{:>22}{:>9}{:>9}{:>9}{:>8}\n", "tracker", "steps", "NIS/expected (95 %)", "correlation (95 %)",
-             "missing", "repeated", "gated", "failed");
+  fmt::print("{:<14}{:>8}{:>24}{:>22}{:>9}{:>9}{:>9}{:>8}\n", "tracker", "steps", "NIS/expected (95 %)",
+             "correlation (95 %)", "missing", "repeated", "gated", "failed");
   for (int i = 0; i < trackers.size(); ++i) {
     const InnovationConsistency& c = consistency[static_cast<std::size_t>(i)];
     const TrackerCounts counts = trackers.counts(i);
-    const std::string nis = c.steps() == 0 ? "-" : fmt::format("{:.2f} ({:.2f}-{:.2f})", c.nis_ratio(), c.nis_ratio_low(), c.nis_ratio_high());
-    const std::string correlation = c.steps() < 2 ? "-" : fmt::format("{:+.3f} (+-{:.3f})", c.correlation(), c.correlation_limit());
-    fmt::print("{:<14}{:>8}{:>24}{:>22}{:>9}{:>9}{:>9}{:>8}\n", trackers.name(i), c.steps(), nis, correlation, counts.missing,
-               counts.repeated, counts.gated, counts.failed);
+    const std::string nis =
+        c.steps() == 0 ? "-"
+                       : fmt::format("{:.2f} ({:.2f}-{:.2f})", c.nis_ratio(), c.nis_ratio_low(), c.nis_ratio_high());
+    const std::string correlation =
+        c.steps() < 2 ? "-" : fmt::format("{:+.3f} (+-{:.3f})", c.correlation(), c.correlation_limit());
+    fmt::print("{:<14}{:>8}{:>24}{:>22}{:>9}{:>9}{:>9}{:>8}\n", trackers.name(i), c.steps(), nis, correlation,
+               counts.missing, counts.repeated, counts.gated, counts.failed);
   }
   for (int i = 0; i < trackers.size(); ++i)
     if (consistency[static_cast<std::size_t>(i)].is_implausible_at_start())
-      fmt::print(stderr, "truebearing: {}: the first innovations are far from the size that it claims: is a column in another unit?\n", trackers.name(i));
+      fmt::print(
+          stderr,
+          "truebearing: {}: the first innovations are far from the size that it claims: is a column in another unit?\n",
+          trackers.name(i));
 }
 
 // The log's own measurements as the one run of a comparison.
@@ -91,14 +98,15 @@ void track(const Options& options) {
     trackers.step(measurement);
     for (int i = 0; i < trackers.size(); ++i)
       for (const StepRecord& record : trackers.records(i)) {
-        if (!record.correction) consistency[static_cast<std::size_t>(i)].add(record);  // a correction has no innovations
+        if (!record.correction)
+          consistency[static_cast<std::size_t>(i)].add(record);  // a correction has no innovations
         writer.add(trackers.name(i), record);
       }
   }
   const bool to_stdout = options.output == "-" || options.json == "-";
   if (!to_stdout) {
-    fmt::print("{}: {} measurements, {} missing, {} repeated rows dropped\n\n", options.log, recording.measurements.size(),
-               recording.counts.missing, recording.counts.repeated);
+    fmt::print("{}: {} measurements, {} missing, {} repeated rows dropped\n\n", options.log,
+               recording.measurements.size(), recording.counts.missing, recording.counts.repeated);
     print_consistency(trackers, consistency);
   }
   if (recording.truth_space) {
@@ -124,7 +132,8 @@ void add_track(CLI::App& app) {
   command->add_option("study", options->study, "study file (TOML)")->required();
   command->add_option("log", options->log, "measurement log (CSV); - is standard input")->required();
   command->add_option("-o,--output", options->output, "write the trackers' step records as CSV; - is standard output");
-  command->add_option("--json", options->json, "write the scores as JSON, where the log has truth; - is standard output");
+  command->add_option("--json", options->json,
+                      "write the scores as JSON, where the log has truth; - is standard output");
   command->callback([options] { track(*options); });
 }
 

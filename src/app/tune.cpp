@@ -22,8 +22,7 @@ void tune(const Options& options, bool seed_given) {
   const std::string output = options.output.empty() ? study.parameters_path().string() : options.output;
   const ParametersFile parameters =
       tune_study(study, {seed_given ? options.seed : study.seed(), options.threads, options.quiet});
-  if (parameters.trackers.empty())
-    throw InputError(options.study, "has no tracker with a key `tune`");
+  if (parameters.trackers.empty()) throw InputError(options.study, "has no tracker with a key `tune`");
   if (output.empty()) throw InputError(options.study, "has no key `parameters`", "that key, or -o FILE");
   write_output(output, parameters_text(parameters));
   if (output != "-") fmt::print("written: {}\n", output);

@@ -13,7 +13,8 @@ namespace {
 constexpr std::size_t kValidationRuns = 200;
 
 // RMSE of the corrected tracker, its base and its reference on runs that neither training nor evaluation sees.
-std::string validation_scores(const Study& study, const std::string& name, const CorrectionModels& models, const WorkflowOptions& options) {
+std::string validation_scores(const Study& study, const std::string& name, const CorrectionModels& models,
+                              const WorkflowOptions& options) {
   const CorrectionSpec& spec = study.tracker(name).correction.value();
   TrackerSet trackers(study.make_ensemble(spec.members()));
   trackers.show_member(spec.base);
@@ -54,14 +55,17 @@ ParametersFile tune_study(const Study& study, const WorkflowOptions& options) {
     TuneReport report;
     parameters.trackers[spec.name] = tune_tracker(study, spec.name, tune_options, &report);
     if (!options.quiet)
-      fmt::print(stderr, "tuned {}: RMSE times {:.4f} (geometric mean over the scored quantities), {} evaluations\n", spec.name,
-                 std::exp((report.cost_after - report.cost_before) / static_cast<double>(study.scenario().truth_space().quantities.size())),
+      fmt::print(stderr, "tuned {}: RMSE times {:.4f} (geometric mean over the scored quantities), {} evaluations\n",
+                 spec.name,
+                 std::exp((report.cost_after - report.cost_before) /
+                          static_cast<double>(study.scenario().truth_space().quantities.size())),
                  report.evaluations);
   }
   return parameters;
 }
 
-CorrectionModels train_study(const Study& study, const std::vector<std::string>& names, const WorkflowOptions& options) {
+CorrectionModels train_study(const Study& study, const std::vector<std::string>& names,
+                             const WorkflowOptions& options) {
   CorrectionModels models;
   for (const TrackerSpec& spec : study.trackers()) {
     if (!spec.correction) continue;
@@ -77,10 +81,11 @@ CorrectionModels train_study(const Study& study, const std::vector<std::string>&
       model = train_correction(study, spec.name, train_options, &report);
     }
     CorrectionModels trained{{spec.name, std::make_shared<const CorrectionModel>(model)}};
-    model.provenance["validation"] = fmt::format("{} runs: {}", kValidationRuns, validation_scores(study, spec.name, trained, options));
+    model.provenance["validation"] =
+        fmt::format("{} runs: {}", kValidationRuns, validation_scores(study, spec.name, trained, options));
     if (!options.quiet)
-      fmt::print(stderr, "trained {}: {} rules on {} steps in {:.2f} s; validation, {}\n", spec.name, model.network.rules(),
-                 report.rows, report.training_seconds, model.provenance["validation"]);
+      fmt::print(stderr, "trained {}: {} rules on {} steps in {:.2f} s; validation, {}\n", spec.name,
+                 model.network.rules(), report.rows, report.training_seconds, model.provenance["validation"]);
     models[spec.name] = std::make_shared<const CorrectionModel>(std::move(model));
   }
   return models;

@@ -18,8 +18,8 @@ struct WorkflowOptions {
 /// Fits every tracker of the study that has something to tune. Says on standard error what it found, unless quiet.
 ParametersFile tune_study(const Study& study, const WorkflowOptions& options);
 
-/// Trains the corrected trackers of those names; all of them where there are none. Scores each on validation runs, which
-/// the model file remembers.
+/// Trains the corrected trackers of those names; all of them where there are none. Scores each on validation runs,
+/// which the model file remembers.
 CorrectionModels train_study(const Study& study, const std::vector<std::string>& names, const WorkflowOptions& options);
 
 }  // namespace truebearing

@@ -20,11 +20,12 @@ struct Outcome {
   std::string err;
 };
 
-/// Starts `truebearing ARGUMENTS` in the folder, its output going to out.txt and err.txt beside the folder. `before` is put in front
-/// in the shell ("ulimit -f 0;").
+/// Starts `truebearing ARGUMENTS` in the folder, its output going to out.txt and err.txt beside the folder. `before` is
+/// put in front in the shell ("ulimit -f 0;").
 inline pid_t start(const TemporaryFolder& folder, const std::string& arguments, const std::filesystem::path& outputs,
                    const std::string& before = {}) {
-  const std::string command = "cd '" + folder.path().string() + "'; " + before + " exec '" + TRUEBEARING_PROGRAM + "' " + arguments;
+  const std::string command =
+      "cd '" + folder.path().string() + "'; " + before + " exec '" + TRUEBEARING_PROGRAM + "' " + arguments;
   const pid_t child = ::fork();
   if (child == 0) {
     const int in = ::open("/dev/null", O_RDONLY);
@@ -54,6 +55,8 @@ inline Outcome run(const TemporaryFolder& folder, const std::string& arguments, 
   return outcome;
 }
 
-inline bool is_one_line(const std::string& text) { return !text.empty() && text.find('\n') == text.size() - 1; }
+inline bool is_one_line(const std::string& text) {
+  return !text.empty() && text.find('\n') == text.size() - 1;
+}
 
 }  // namespace truebearing::testing

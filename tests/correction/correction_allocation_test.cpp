@@ -1,5 +1,5 @@
-// A corrected tracker that runs allocates nothing. Every allocation goes through malloc in the end: operator new, Eigen, the
-// library's own code however it was compiled. So that is where they are counted.
+// A corrected tracker that runs allocates nothing. Every allocation goes through malloc in the end: operator new,
+// Eigen, the library's own code however it was compiled. So that is where they are counted.
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -98,8 +98,8 @@ Ensemble radar_ensemble() {
 
 std::shared_ptr<const CorrectionModel> radar_model() {
   RandomStream random({}, StreamId::test);
-  CorrectionModel model =
-      testing::line_model(testing::radar_features(), testing::random_parameters(random, 4, 16, 2), "plain", "tuned", "wide");
+  CorrectionModel model = testing::line_model(testing::radar_features(), testing::random_parameters(random, 4, 16, 2),
+                                              "plain", "tuned", "wide");
   model.kappa = 3.0;
   model.gate = testing::box(4, -3.0, 6.0);
   return testing::shared(model);

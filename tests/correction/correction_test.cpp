@@ -152,7 +152,8 @@ TEST(Correction, HandOverCovarianceIsThatOfTheMixture) {
     const double edges = (s.base->record.innovation->z[0] - 100.0 - 1.0) / 0.2;
     const double g = std::exp(-0.5 * edges * edges);
     const Eigen::Vector2d d(2.0, -1.0);
-    const Eigen::Matrix2d P = g * 1.5 * s.source->record.P + (1.0 - g) * s.reference->record.P + g * (1.0 - g) * d * d.transpose();
+    const Eigen::Matrix2d P =
+        g * 1.5 * s.source->record.P + (1.0 - g) * s.reference->record.P + g * (1.0 - g) * d * d.transpose();
     EXPECT_NEAR(record.correction->gate, g, 1e-12);
     EXPECT_LT((record.x - s.reference->record.x - g * d).norm(), 1e-12);
     EXPECT_LT((record.P - P).norm(), 1e-12);
@@ -183,7 +184,8 @@ TEST(Correction, NetworkThatContradictsTheReferenceMoreThanItEverDidHandsOver) {
   Scene s = scene();
   s.reference->record.P = BoundedVector(Eigen::Vector2d(4.0, 1.0)).asDiagonal();
   for (const double disagreement : {1.0, 2.0, 2.1, 2.5, 30.0, 1e200, 5e307}) {
-    CorrectionModel model = line_model(kResidual, constant(1, {std::sqrt(5.0) * disagreement, 0.0}), "base", "reference", "source");
+    CorrectionModel model =
+        line_model(kResidual, constant(1, {std::sqrt(5.0) * disagreement, 0.0}), "base", "reference", "source");
     model.kappa = 3.0;
     model.gate = box(1, -1.0, 1.0, 2.0);
     Correction correction(shared(model), s.ensemble);
@@ -199,7 +201,8 @@ TEST(Correction, NetworkThatContradictsTheReferenceMoreThanItEverDidHandsOver) {
 TEST(Correction, WithoutBaseOrCovarianceSourceTheReferenceStands) {
   Scene s = scene();
   s.reference->record.x = Eigen::Vector2d(103.0, 9.0);
-  Correction correction(shared(line_model(kResidual, constant(1, {5.0, -2.0}), "base", "reference", "source")), s.ensemble);
+  Correction correction(shared(line_model(kResidual, constant(1, {5.0, -2.0}), "base", "reference", "source")),
+                        s.ensemble);
   const auto corrected = [&] {
     s.ensemble.step(position(1.0, 0.0));
     return correction.correct(s.ensemble);
@@ -218,10 +221,11 @@ TEST(Correction, WithoutBaseOrCovarianceSourceTheReferenceStands) {
   EXPECT_TRUE(corrected().empty());
 }
 
-// The promise of the house: never more than kappa standard deviations of the reference from it, whatever the weights and inputs.
+// The promise of the house: never more than kappa standard deviations of the reference from it, whatever the weights
+// and inputs.
 TEST(Correction, PublishedEstimateIsFiniteAndWithinKappaOfTheReference) {
   RandomStream random({.seed = 17}, StreamId::test);
-  const std::array<double, 14> hostile{kNaN,  kInfinity, -kInfinity, 1.7e308, -1e308, 1e300,  1e154,
+  const std::array<double, 14> hostile{kNaN,  kInfinity, -kInfinity, 1.7e308, -1e308,  1e300,  1e154,
                                        1e-10, 1e-308,    5e-324,     0.0,     -1e-200, -1e300, -1.0};
   const auto any = [&] { return hostile[random.index(hostile.size())]; };
   const auto finite = [&] { return hostile[3 + random.index(hostile.size() - 3)]; };
@@ -235,7 +239,8 @@ TEST(Correction, PublishedEstimateIsFiniteAndWithinKappaOfTheReference) {
   int moved = 0, limited = 0;
   for (int model_number = 0; model_number < 1000; ++model_number) {
     Scene s = scene();
-    FuzzyNetwork::Parameters parameters = random_parameters(random, 5, 1 + static_cast<Eigen::Index>(random.index(8)), 2);
+    FuzzyNetwork::Parameters parameters =
+        random_parameters(random, 5, 1 + static_cast<Eigen::Index>(random.index(8)), 2);
     const bool wild = model_number % 3 != 0;
     const auto spoil = [&](auto& values, const auto& make) {
       for (Eigen::Index i = 0; i < values.size(); ++i)
@@ -260,7 +265,8 @@ TEST(Correction, PublishedEstimateIsFiniteAndWithinKappaOfTheReference) {
     if (wild) spoil(model.inflation, positive);
     const bool bounded = model_number % 10 != 9;
     model.kappa = bounded ? std::pow(10.0, random.uniform(-2.0, 3.0)) : kInfinity;
-    if (random.uniform() < 0.5) model.gate = box(5, -random.uniform(0.1, 5.0), random.uniform(0.1, 5.0), model_number % 2 == 0 ? kInfinity : 3.0);
+    if (random.uniform() < 0.5)
+      model.gate = box(5, -random.uniform(0.1, 5.0), random.uniform(0.1, 5.0), model_number % 2 == 0 ? kInfinity : 3.0);
     Correction correction(shared(model), s.ensemble);
     for (int step = 0; step < 110; ++step) {
       for (ScriptedTracker* tracker : {s.base, s.reference, s.source}) {

@@ -123,7 +123,8 @@ TEST(FeatureExtractor, EstimateIsScaledAndMayBeACompanions) {
   FeatureExtractor own = extractor_of({{.kind = FeatureKind::estimate, .component = "velocity_mps", .scale = 4.0}});
   EXPECT_EQ(feature(own, step(0.0, 1.0, 0.0, 30.0)), 7.5);
   EXPECT_EQ(feature(own, coasted()), 125.0) << "the state moves on over a coasted step";
-  FeatureExtractor theirs = extractor_of({{.kind = FeatureKind::estimate, .component = "velocity_mps", .companion = "wide", .scale = 4.0}});
+  FeatureExtractor theirs =
+      extractor_of({{.kind = FeatureKind::estimate, .component = "velocity_mps", .companion = "wide", .scale = 4.0}});
   const StepRecord companion = step(0.0, 1.0, 0.0, 50.0);
   EXPECT_EQ(feature(theirs, step(0.0, 1.0, 0.0, 30.0), {&companion}), 12.5);
 }
@@ -166,11 +167,10 @@ TEST(FeatureExtractor, CompanionOfAnotherSizeGivesNaN) {
 }
 
 TEST(FeatureExtractor, NewTrackBeginsAfresh) {
-  const std::vector<FeatureSpec> specs{
-      {.kind = FeatureKind::log_step},
-      {.kind = FeatureKind::innovation_average, .alpha = 0.5},
-      {.kind = FeatureKind::log_nis_average, .alpha = 0.5, .offset = 0.05},
-      {.kind = FeatureKind::log_mean_nis, .offset = 0.05}};
+  const std::vector<FeatureSpec> specs{{.kind = FeatureKind::log_step},
+                                       {.kind = FeatureKind::innovation_average, .alpha = 0.5},
+                                       {.kind = FeatureKind::log_nis_average, .alpha = 0.5, .offset = 0.05},
+                                       {.kind = FeatureKind::log_mean_nis, .offset = 0.05}};
   FeatureExtractor used = extractor_of(specs), fresh = extractor_of(specs);
   FeatureExtractor::Features a, b;
   for (int k = 0; k < 5; ++k) used.extract(step(9.0, 1.0), {}, a);
@@ -182,10 +182,10 @@ TEST(FeatureExtractor, NewTrackBeginsAfresh) {
 }
 
 TEST(FeatureExtractor, CompanionIsListedOnceHoweverManyFeaturesNameIt) {
-  FeatureExtractor extractor = extractor_of(
-      {{.kind = FeatureKind::companion_difference, .component = "position_m", .companion = "wide"},
-       {.kind = FeatureKind::companion_difference, .component = "position_m", .companion = "narrow"},
-       {.kind = FeatureKind::companion_difference, .component = "velocity_mps", .companion = "wide"}});
+  FeatureExtractor extractor =
+      extractor_of({{.kind = FeatureKind::companion_difference, .component = "position_m", .companion = "wide"},
+                    {.kind = FeatureKind::companion_difference, .component = "position_m", .companion = "narrow"},
+                    {.kind = FeatureKind::companion_difference, .component = "velocity_mps", .companion = "wide"}});
   EXPECT_EQ(extractor.companions(), (std::vector<std::string>{"wide", "narrow"}));
   FeatureExtractor::Features features;
   const StepRecord wide = step(0.0, 1.0, 101.0, 12.0), narrow = step(0.0, 1.0, 104.0, 10.0);
@@ -199,15 +199,18 @@ std::string refusal(const FeatureSpec& spec, RecordBlocks blocks = kAll) {
 }
 
 TEST(FeatureExtractor, UnknownComponentIsRefusedWithTheNearest) {
-  EXPECT_THAT(refusal({.kind = FeatureKind::gain, .component = "velocity_ms"}), HasSubstr("did you mean \"velocity_mps\""));
+  EXPECT_THAT(refusal({.kind = FeatureKind::gain, .component = "velocity_ms"}),
+              HasSubstr("did you mean \"velocity_mps\""));
 }
 
 TEST(FeatureExtractor, ConstantsOutOfRangeAreRefused) {
   for (const double bad : {0.0, -1.0, kNaN, testing::kInfinity}) {
     EXPECT_THAT(refusal({.kind = FeatureKind::innovation_average, .alpha = bad}), HasSubstr("alpha"));
     EXPECT_THAT(refusal({.kind = FeatureKind::log_mean_nis, .offset = bad}), HasSubstr("offset"));
-    EXPECT_THAT(refusal({.kind = FeatureKind::companion_difference, .component = "position_m", .companion = "wide", .scale = bad}),
-                HasSubstr("scale"));
+    EXPECT_THAT(
+        refusal(
+            {.kind = FeatureKind::companion_difference, .component = "position_m", .companion = "wide", .scale = bad}),
+        HasSubstr("scale"));
   }
   EXPECT_THAT(refusal({.kind = FeatureKind::innovation_average, .alpha = 1.01}), HasSubstr("alpha"));
   EXPECT_EQ(refusal({.kind = FeatureKind::innovation_average, .alpha = 1.0}), "no error");
@@ -219,26 +222,31 @@ TEST(FeatureExtractor, DifferenceNeedsACompanion) {
 
 TEST(FeatureExtractor, CompanionThatDoesNotRunIsRefused) {
   const auto build = [] {
-    FeatureExtractor({{.kind = FeatureKind::innovation, .companion = "wide"}}, line_space(), [](const std::string& name) {
-      if (name == "wide") throw InputError("trackers", "there is no \"wide\"");
-      return kAll;
-    });
+    FeatureExtractor({{.kind = FeatureKind::innovation, .companion = "wide"}}, line_space(),
+                     [](const std::string& name) {
+                       if (name == "wide") throw InputError("trackers", "there is no \"wide\"");
+                       return kAll;
+                     });
   };
   EXPECT_THAT(error_message(build), HasSubstr("wide"));
 }
 
 TEST(FeatureExtractor, BlocksThatTheRecordsLackAreRefused) {
-  EXPECT_THAT(refusal({.kind = FeatureKind::gain, .component = "position_m"}, {.prediction = true, .innovation = true}), HasSubstr("gain"));
-  EXPECT_THAT(refusal({.kind = FeatureKind::prediction_difference, .component = "position_m"}, {}), HasSubstr("prediction"));
+  EXPECT_THAT(refusal({.kind = FeatureKind::gain, .component = "position_m"}, {.prediction = true, .innovation = true}),
+              HasSubstr("gain"));
+  EXPECT_THAT(refusal({.kind = FeatureKind::prediction_difference, .component = "position_m"}, {}),
+              HasSubstr("prediction"));
   for (const FeatureKind kind : {FeatureKind::residual, FeatureKind::innovation, FeatureKind::innovation_average,
                                  FeatureKind::log_nis_average, FeatureKind::log_mean_nis})
-    EXPECT_THAT(refusal({.kind = kind, .component = "position_m", .alpha = 0.5, .offset = 0.5}, {}), HasSubstr("innovation"));
+    EXPECT_THAT(refusal({.kind = kind, .component = "position_m", .alpha = 0.5, .offset = 0.5}, {}),
+                HasSubstr("innovation"));
   EXPECT_EQ(refusal({.kind = FeatureKind::log_step}, {}), "no error");
 }
 
 TEST(FeatureExtractor, NumberOfFeaturesIsBounded) {
   EXPECT_THAT(error_message([] { extractor_of({}); }), HasSubstr("1 to 16"));
-  EXPECT_THAT(error_message([] { extractor_of(std::vector<FeatureSpec>(17, {.kind = FeatureKind::log_step})); }), HasSubstr("1 to 16"));
+  EXPECT_THAT(error_message([] { extractor_of(std::vector<FeatureSpec>(17, {.kind = FeatureKind::log_step})); }),
+              HasSubstr("1 to 16"));
 }
 
 TEST(Feature, NamesGoThereAndBackAndMisspeltOnesAreSuggested) {
@@ -251,8 +259,11 @@ TEST(Feature, NamesGoThereAndBackAndMisspeltOnesAreSuggested) {
 TEST(Feature, ParityIsWhatAMirroredTargetDoes) {
   std::vector<FeatureSpec> specs;
   for (const std::string& name : feature_kind_names())
-    specs.push_back({.kind = feature_kind(name), .component = "position_m",
-                     .companion = name == "companion_difference" ? "wide" : "", .alpha = 0.3, .offset = 0.1});
+    specs.push_back({.kind = feature_kind(name),
+                     .component = "position_m",
+                     .companion = name == "companion_difference" ? "wide" : "",
+                     .alpha = 0.3,
+                     .offset = 0.1});
   FeatureExtractor extractor = extractor_of(specs), mirrored = extractor_of(specs);
   RandomStream random({}, StreamId::test);
   testing::RadarFilter radar;
@@ -267,7 +278,8 @@ TEST(Feature, ParityIsWhatAMirroredTargetDoes) {
     extractor.extract(tracker->step(testing::position(k, z))[0], companion, a);
     mirrored.extract(mirror_tracker->step(testing::position(k, -z))[0], mirror_companion, b);
     for (Eigen::Index i = 0; i < a.size(); ++i)
-      ASSERT_EQ(b[i], mirror_parity(specs[static_cast<std::size_t>(i)].kind) * a[i]) << describe(specs[static_cast<std::size_t>(i)]);
+      ASSERT_EQ(b[i], mirror_parity(specs[static_cast<std::size_t>(i)].kind) * a[i])
+          << describe(specs[static_cast<std::size_t>(i)]);
   }
 }
 

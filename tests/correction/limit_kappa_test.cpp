@@ -16,7 +16,8 @@ using testing::kNaN;
 
 BoundedMatrix random_covariance(RandomStream& random, Eigen::Index n, double decades) {
   const BoundedMatrix A = BoundedMatrix::NullaryExpr(n, n, [&] { return random.normal(); });
-  const BoundedVector scale = BoundedVector::NullaryExpr(n, [&] { return std::pow(10.0, random.uniform(-decades, decades)); });
+  const BoundedVector scale =
+      BoundedVector::NullaryExpr(n, [&] { return std::pow(10.0, random.uniform(-decades, decades)); });
   return scale.asDiagonal() * (A * A.transpose() + 0.05 * BoundedMatrix::Identity(n, n)) * scale.asDiagonal();
 }
 
@@ -80,9 +81,10 @@ TEST(LimitKappa, NothingPassesTheBound) {
     const bool tame = k % 4 == 0;
     if (!tame) {
       const double kind = random.uniform();
-      if (kind < 0.4) d[static_cast<Eigen::Index>(random.index(static_cast<std::uint64_t>(n)))] = hostile[random.index(12)];
+      if (kind < 0.4)
+        d[static_cast<Eigen::Index>(random.index(static_cast<std::uint64_t>(n)))] = hostile[random.index(12)];
       if (kind > 0.3 && kind < 0.5) d *= hostile[3 + random.index(9)];
-      if (kind > 0.5 && kind < 0.6) P(n - 1, n - 1) *= -1.0;                     // indefinite
+      if (kind > 0.5 && kind < 0.6) P(n - 1, n - 1) *= -1.0;                           // indefinite
       if (kind > 0.6 && kind < 0.7) P.row(0) = P.row(n - 1), P.col(0) = P.col(n - 1);  // singular, up to rounding
       if (kind > 0.7 && kind < 0.8) P *= hostile[3 + random.index(9)];
       if (kind > 0.8 && kind < 0.85) P(0, n - 1) = P(n - 1, 0) = hostile[random.index(12)];
@@ -93,7 +95,9 @@ TEST(LimitKappa, NothingPassesTheBound) {
     ASSERT_TRUE(limited.d.allFinite()) << k << "\n" << P << "\n" << d;
     ASSERT_LE(limited.distance_sigmas, kappa * (1.0 + 1e-9)) << k;
     const double distance = std::sqrt(mahalanobis_squared(P, limited.d));
-    ASSERT_TRUE(limited.d.isZero(0.0) || distance <= kappa * (1.0 + 1e-9)) << k << ": " << distance << "\n" << P << "\n" << d;
+    ASSERT_TRUE(limited.d.isZero(0.0) || distance <= kappa * (1.0 + 1e-9)) << k << ": " << distance << "\n"
+                                                                           << P << "\n"
+                                                                           << d;
     if (tame) {
       ASSERT_LE(exact_distance(P, limited.d), kappa * (1.0 + 1e-9)) << k;
       ++exact_cases;

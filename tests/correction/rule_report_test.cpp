@@ -42,17 +42,18 @@ TEST(RuleReport, SentencesSayConditionsOutputUsageAndTeacher) {
       parameters);
   model.usage = Eigen::Vector2d(0.25, 0.75);
   model.local_mean << -900.0, -45.0, 2710.0, 140.0;
-  EXPECT_EQ(rule_sentences(model),
-            "1. IF gain in position_m is MEDIUM AND difference of wide in velocity_mps is LARGE POSITIVE THEN add +2890 m, "
-            "+152 m/s   (usage 75.0 %, teacher's mean +2710 m, +140 m/s)\n"
-            "2. IF gain in position_m is VERY SMALL AND difference of wide in velocity_mps is LARGE NEGATIVE THEN add -1000 m, "
-            "-50 m/s   (usage 25.0 %, teacher's mean -900 m, -45 m/s)\n");
+  EXPECT_EQ(
+      rule_sentences(model),
+      "1. IF gain in position_m is MEDIUM AND difference of wide in velocity_mps is LARGE POSITIVE THEN add +2890 m, "
+      "+152 m/s   (usage 75.0 %, teacher's mean +2710 m, +140 m/s)\n"
+      "2. IF gain in position_m is VERY SMALL AND difference of wide in velocity_mps is LARGE NEGATIVE THEN add -1000 m, "
+      "-50 m/s   (usage 25.0 %, teacher's mean -900 m, -45 m/s)\n");
 }
 
 TEST(RuleReport, EveryRuleHasOneSentence) {
   RandomStream random({}, StreamId::test);
-  const CorrectionModel model =
-      testing::line_model(testing::radar_features(), testing::random_parameters(random, 4, 16, 2), "plain", "tuned", "wide");
+  const CorrectionModel model = testing::line_model(
+      testing::radar_features(), testing::random_parameters(random, 4, 16, 2), "plain", "tuned", "wide");
   const std::string text = rule_sentences(model);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 16);
   EXPECT_THAT(text, HasSubstr("16. IF ln step is"));

@@ -1,8 +1,10 @@
-// Friedland's separate-bias estimation (IEEE Trans. Automatic Control AC-14, 1969), against the companion that features compare
-// with. The error b of the base's prior mean is a constant bias, b ~ N(0, M). It reaches the base's errors through
+// Friedland's separate-bias estimation (IEEE Trans. Automatic Control AC-14, 1969), against the companion that features
+// compare with. The error b of the base's prior mean is a constant bias, b ~ N(0, M). It reaches the base's errors
+// through
 //     U <- F U,  s = H U,  U <- (I - K H) U,   U_0 = I,
-// so the base's innovations have mean s b, and its information form estimates it: I <- I + s' S^-1 s, i <- i + s' S^-1 nu, I_0 = M^-1.
-// The filter that starts with P0 + M must then say x_base + U I^-1 i, with covariance P_base + U I^-1 U'.
+// so the base's innovations have mean s b, and its information form estimates it: I <- I + s' S^-1 s, i <- i + s' S^-1
+// nu, I_0 = M^-1. The filter that starts with P0 + M must then say x_base + U I^-1 i, with covariance P_base + U I^-1
+// U'.
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -29,7 +31,8 @@ TEST(CompanionDifference, IsTheTwoStageBiasEstimate) {
     radar.noise_variance = {std::pow(10.0, random.uniform(-1.0, 2.0)), std::pow(10.0, random.uniform(-2.0, 1.0))};
     const Eigen::Matrix2d P0 = covariance(random, 30.0, 30.0), M = covariance(random, 1000.0, 200.0);
     const auto started_at = [&](const Eigen::Matrix2d& P) {
-      return testing::RadarTracker(line_space(), radar.motion(), radar.sensor(), PriorStart<2>{Eigen::Vector2d::Zero(), P});
+      return testing::RadarTracker(line_space(), radar.motion(), radar.sensor(),
+                                   PriorStart<2>{Eigen::Vector2d::Zero(), P});
     };
     testing::RadarTracker base = started_at(P0), companion = started_at(P0 + M);
 

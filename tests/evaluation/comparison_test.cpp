@@ -27,12 +27,13 @@ TrackerSet trackers() {
   ensemble.add("wide", radar.tracker());
   radar.sigma_m = 4000.0;
   ensemble.add("tuned", radar.tracker());
-  ensemble.add("raw", std::make_unique<RawTracker>(state_space_of_components({"position_m"}), BoundedVector::Constant(1, 3e3)));
+  ensemble.add(
+      "raw", std::make_unique<RawTracker>(state_space_of_components({"position_m"}), BoundedVector::Constant(1, 3e3)));
   TrackerSet set(std::move(ensemble));
   for (const char* name : {"plain", "tuned", "raw"}) set.show_member(name);
   RandomStream random({}, StreamId::test);
-  CorrectionModel model =
-      testing::line_model(testing::radar_features(), testing::random_parameters(random, 4, 6, 2), "plain", "tuned", "wide");
+  CorrectionModel model = testing::line_model(testing::radar_features(), testing::random_parameters(random, 4, 6, 2),
+                                              "plain", "tuned", "wide");
   model.kappa = 3.0;
   set.show_correction("nfnn", testing::shared(model));
   return set;
@@ -69,7 +70,9 @@ TEST(Comparison, IsTheSameForAnyNumberOfThreadsByteForByte) {
 TEST(Comparison, AnotherSeedOrRoleGivesOtherRuns) {
   const LineScenario scenario = testing::radar_family(40);
   ComparisonOptions other = options(1);
-  const auto rmse = [&] { return compare(trackers(), {{"family", &scenario}}, other).tracker("plain")->quantities[0].rmse; };
+  const auto rmse = [&] {
+    return compare(trackers(), {{"family", &scenario}}, other).tracker("plain")->quantities[0].rmse;
+  };
   const double evaluation = rmse();
   other.role = Role::validation;
   EXPECT_NE(rmse(), evaluation);
@@ -92,7 +95,8 @@ TEST(Comparison, JsonHasTheShapeThatOtherProgramsRead) {
       EXPECT_TRUE(tracker[key]["position_m"].is_number()) << name << " " << key;
       EXPECT_EQ(tracker[key].contains("velocity_mps"), name != "raw") << name << " " << key;
     }
-    for (const char* key : {"loss_rate", "nees", "coverage95"}) EXPECT_TRUE(tracker[key].is_number()) << name << " " << key;
+    for (const char* key : {"loss_rate", "nees", "coverage95"})
+      EXPECT_TRUE(tracker[key].is_number()) << name << " " << key;
     EXPECT_TRUE(tracker["metrics"].is_array());
     EXPECT_EQ(tracker["series"]["time_s"].size(), 40u);
     EXPECT_EQ(tracker["series"]["rmse"]["position_m"].size(), 40u);
@@ -113,10 +117,12 @@ TEST(Comparison, OfSeveralSetsHasEachAndAllTogether) {
   const double steps = report["trackers"]["plain"]["scored_steps"];
   EXPECT_EQ(steps, 24.0 * (40 + 50));
   const auto squares = [](const json& part) {
-    const double rmse = part["trackers"]["plain"]["rmse"]["position_m"], count = part["trackers"]["plain"]["scored_steps"];
+    const double rmse = part["trackers"]["plain"]["rmse"]["position_m"],
+                 count = part["trackers"]["plain"]["scored_steps"];
     return rmse * rmse * count;
   };
-  EXPECT_NEAR(squares(report), squares(report["sets"]["family"]) + squares(report["sets"]["longer"]), 1e-9 * squares(report));
+  EXPECT_NEAR(squares(report), squares(report["sets"]["family"]) + squares(report["sets"]["longer"]),
+              1e-9 * squares(report));
 }
 
 TEST(Comparison, TableHasARowForEveryTrackerAndPair) {

@@ -10,9 +10,10 @@ namespace {
 using testing::position;
 using testing::RadarFilter;
 
-// A target that moves as the filter believes, seen by a sensor whose noise is `sigma_factor` times what the filter believes, in
-// units `unit` times those it takes.
-InnovationConsistency consistency(RadarFilter radar, double sigma_factor, double unit, int steps, double process_factor = 1.0) {
+// A target that moves as the filter believes, seen by a sensor whose noise is `sigma_factor` times what the filter
+// believes, in units `unit` times those it takes.
+InnovationConsistency consistency(RadarFilter radar, double sigma_factor, double unit, int steps,
+                                  double process_factor = 1.0) {
   radar.variance = {1e6, 4e4};
   RandomStream random({.seed = 6}, StreamId::test);
   Eigen::Vector2d x(1e3 * random.normal(), 200.0 * random.normal());

@@ -62,10 +62,12 @@ TEST(MonteCarlo, ExceptionStopsTheRestAndComesThrough) {
 
 TEST(MonteCarlo, ProgressCountsEveryRun) {
   std::vector<std::size_t> seen;
-  monte_carlo(50, 4, [](std::size_t, std::size_t) {}, [&](std::size_t done, std::size_t total) {
-    EXPECT_EQ(total, 50u);
-    seen.push_back(done);
-  });
+  monte_carlo(
+      50, 4, [](std::size_t, std::size_t) {},
+      [&](std::size_t done, std::size_t total) {
+        EXPECT_EQ(total, 50u);
+        seen.push_back(done);
+      });
   ASSERT_EQ(seen.size(), 50u);
   for (std::size_t i = 0; i < seen.size(); ++i) EXPECT_EQ(seen[i], i + 1);
 }

@@ -99,7 +99,8 @@ TEST(Summary, LossRateIsTheShareOfRunsThatEndBeyondTheThreshold) {
                                    run({1.0, 9.0}, {0.0, 6.0}, {1.0, 1.0}), run({12.0, kNaN}, {0.0, kNaN}, {1.0, kNaN}),
                                    run({kNaN, kNaN}, {kNaN, kNaN}, {kNaN, kNaN})};
   const ScoringRule rule{.from_step = 1, .loss_thresholds = {{"position_m", 10.0}, {"velocity_mps", 5.0}}};
-  EXPECT_DOUBLE_EQ(summarise("t", kScorer, pointers(runs), rule).loss_rate, 0.8) << "all but the first; a run without a record is lost";
+  EXPECT_DOUBLE_EQ(summarise("t", kScorer, pointers(runs), rule).loss_rate, 0.8)
+      << "all but the first; a run without a record is lost";
   EXPECT_DOUBLE_EQ(summarise("t", kScorer, pointers(runs), {}).loss_rate, 0.0) << "nobody said what lost is";
 }
 

@@ -13,7 +13,7 @@
 namespace truebearing::testing {
 
 /// A gate whose box is [low, high] in every feature; without `largest_disagreement`, one that asks nothing else.
-inline BoxGate box(Eigen::Index features, double low, double high, 
+inline BoxGate box(Eigen::Index features, double low, double high,
                    double largest_disagreement = std::numeric_limits<double>::infinity()) {
   BoxGate gate;
   gate.low = Eigen::VectorXd::Constant(features, low);

@@ -81,8 +81,8 @@ TEST(FilterBank, PosteriorPicksTheMeasurementNoiseThatMadeTheLog) {
   }
 }
 
-// The NEES at the last step of runs whose velocity and noise are drawn from what the bank believes. Its expectation is 2 for the
-// Bayes estimate, mixture or not; the interval is that of the mean of `runs` independent values.
+// The NEES at the last step of runs whose velocity and noise are drawn from what the bank believes. Its expectation is
+// 2 for the Bayes estimate, mixture or not; the interval is that of the mean of `runs` independent values.
 testing::Moments bank_nees(const std::vector<double>& believed_factors, std::size_t runs) {
   const std::vector<double> velocities{-300.0, -100.0, 100.0, 300.0};
   const std::vector<double> factors{0.25, 1.0, 4.0};

@@ -83,8 +83,8 @@ TEST(FilterTracker, StepsAreAsLongAsTheTimesSay) {
   }
 }
 
-// Rows without a usable measurement, sprinkled over a log, must not show in the records of the other rows. Discrete noise is the
-// hard case: crossing a and then b is not crossing a + b.
+// Rows without a usable measurement, sprinkled over a log, must not show in the records of the other rows. Discrete
+// noise is the hard case: crossing a and then b is not crossing a + b.
 template <typename Noise>
 void expect_no_trace_of_missing(const Noise& noise, const FilterTrackerOptions& options) {
   using Motion = ConstantVelocity<1, Noise>;
@@ -257,7 +257,8 @@ TEST(FilterTracker, LongGapEndsTheTrackAndTheNextMeasurementBeginsOne) {
 }
 
 TEST(FilterTracker, LostTargetNeedsTwoMeasurementsAgainWhereTwoMadeIt) {
-  RadarTracker tracker(line_space(), RadarFilter{}.motion(), {Scalar1(30.0), 1.0}, TwoPointStart{}, {.lost_after_s = 5.0});
+  RadarTracker tracker(line_space(), RadarFilter{}.motion(), {Scalar1(30.0), 1.0}, TwoPointStart{},
+                       {.lost_after_s = 5.0});
   tracker.step(position(0.0, 0.0));
   EXPECT_EQ(tracker.step(position(1.0, 10.0))[0].track, 0);
   EXPECT_TRUE(tracker.step(position(7.0, 1000.0)).empty());
@@ -304,7 +305,8 @@ TEST(FilterTracker, FailedUpdateLeavesThePredictionAndTheLastValidState) {
 }
 
 TEST(FilterTracker, FailedPredictionIsNotTakenForAState) {
-  // The gap is so long that the covariance overflows: neither the old state nor anything made from it holds at that time.
+  // The gap is so long that the covariance overflows: neither the old state nor anything made from it holds at that
+  // time.
   const RadarFilter radar;
   const auto tracker = radar.tracker();
   const StepRecord last = last_record(*tracker, radar_log(5, 50));

@@ -9,7 +9,9 @@ namespace {
 using testing::kNaN;
 using testing::position;
 
-RawTracker raw() { return {state_space_of_components({"position_m"}), BoundedVector::Constant(1, 150.0)}; }
+RawTracker raw() {
+  return {state_space_of_components({"position_m"}), BoundedVector::Constant(1, 150.0)};
+}
 
 TEST(RawTracker, EstimateIsTheMeasurementWithItsVariance) {
   RawTracker tracker = raw();

@@ -38,7 +38,8 @@ CorrectionSpec spec(std::size_t runs) {
 // A scenario with another truth, or none, beside the same measurements.
 class OtherTruth final : public Scenario {
  public:
-  OtherTruth(const Scenario& scenario, double offset, double from_step = 0) : scenario_(scenario), offset_(offset), from_(from_step) {}
+  OtherTruth(const Scenario& scenario, double offset, double from_step = 0)
+      : scenario_(scenario), offset_(offset), from_(from_step) {}
   Recording simulate(const RunKey& key) const override {
     Recording recording = scenario_.simulate(key);
     for (std::size_t k = 0; k < recording.truth[0].x.size(); ++k)
@@ -69,7 +70,8 @@ class KeysSeen final : public Scenario {
 
 TEST(Teacher, RowsAreTruthMinusTheBaseStepByStep) {
   const LineScenario scenario = testing::radar_family(12);
-  const TeacherSet set = collect_teacher_set(ensemble(), spec(3), scenario, {.seed = 9, .role = Role::training, .threads = 1, .progress = {}});
+  const TeacherSet set = collect_teacher_set(ensemble(), spec(3), scenario,
+                                             {.seed = 9, .role = Role::training, .threads = 1, .progress = {}});
   ASSERT_EQ(set.X.rows(), 36);
   ASSERT_EQ(set.X.cols(), 4);
   ASSERT_EQ(set.Y.cols(), 2);
@@ -141,8 +143,10 @@ TEST(Teacher, RowsAreTheSameForAnyNumberOfThreads) {
 TEST(Teacher, DrawsItsOwnRoleOnly) {
   const LineScenario scenario = testing::radar_family(5);
   const KeysSeen training(scenario), validation(scenario);
-  collect_teacher_set(ensemble(), spec(10), training, {.seed = 3, .role = Role::training, .threads = 1, .progress = {}});
-  collect_teacher_set(ensemble(), spec(10), validation, {.seed = 3, .role = Role::validation, .threads = 1, .progress = {}});
+  collect_teacher_set(ensemble(), spec(10), training,
+                      {.seed = 3, .role = Role::training, .threads = 1, .progress = {}});
+  collect_teacher_set(ensemble(), spec(10), validation,
+                      {.seed = 3, .role = Role::validation, .threads = 1, .progress = {}});
   EXPECT_EQ(training.keys.size(), 10u);
   for (const auto& key : training.keys) {
     EXPECT_EQ(key[0], static_cast<std::uint64_t>(Role::training));

@@ -83,8 +83,8 @@ TEST(TrainCorrection, CorrectionTakesMostOfThePlainFiltersError) {
 
 TEST(TrainCorrection, ByBackPropagationIsTheSameToTheBitToo) {
   const TemporaryFolder folder;
-  const Study study = Study::load(write_study(
-      folder, replaced(kStudy, "rules = 4\nruns = 20\niterations = 10", "method = \"back_propagation\"\nruns = 5\nepochs = 2")));
+  const Study study = Study::load(write_study(folder, replaced(kStudy, "rules = 4\nruns = 20\niterations = 10",
+                                                               "method = \"back_propagation\"\nruns = 5\nepochs = 2")));
   EXPECT_EQ(model_text(train(study, 5, 1)), model_text(train(study, 5, 4)));
 }
 

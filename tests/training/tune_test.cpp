@@ -53,7 +53,8 @@ Study known(const TemporaryFolder& folder, const std::string& study = kTune) {
   return Study::load(folder.write("study.toml", study));
 }
 
-TunedValues tune(const Study& study, const std::string& name, int threads, TuneReport* report = nullptr, int evaluations = 160) {
+TunedValues tune(const Study& study, const std::string& name, int threads, TuneReport* report = nullptr,
+                 int evaluations = 160) {
   TuneOptions options;
   options.seed = 2;
   options.threads = threads;
@@ -85,7 +86,8 @@ TEST(Tune, OneNumberAloneIsFoundWithoutBias) {
     TuneOptions options;
     options.seed = seed;
     options.max_evaluations = 50;
-    const double found = tune_tracker(seed % 2 == 0 ? below : above, "filter", options).at("measurement.variance_m2")[0];
+    const double found =
+        tune_tracker(seed % 2 == 0 ? below : above, "filter", options).at("measurement.variance_m2")[0];
     errors.push_back(std::log(found / 1e4));
     EXPECT_NEAR(errors.back(), 0.0, 0.25) << seed;
   }
@@ -97,7 +99,8 @@ TEST(Tune, OneNumberAloneIsFoundWithoutBias) {
 TEST(Tune, CommonFactorIsSetByTheNees) {
   const TemporaryFolder folder;
   // Q, R and P0 tuned together: one factor on all of them changes no estimate.
-  const std::string all = replaced(kTune, "\"measurement.variance_m2\"]", "\"measurement.variance_m2\", \"start.variance\"]");
+  const std::string all =
+      replaced(kTune, "\"measurement.variance_m2\"]", "\"measurement.variance_m2\", \"start.variance\"]");
   for (const char* start : {"variance_m2 = 2e3", "variance_m2 = 2e5"}) {
     const Study study = known(folder, replaced(all, "variance_m2 = 2e3", start));
     ParametersFile parameters;

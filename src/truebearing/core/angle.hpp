@@ -1,4 +1,5 @@
-// Angles. Inside the program every angle is in radians; bearings run clockwise from North unless a model says otherwise.
+// Angles. Inside the program every angle is in radians; bearings run clockwise from North unless a model says
+// otherwise.
 #pragma once
 
 #include <cmath>
@@ -8,10 +9,16 @@ namespace truebearing {
 
 inline constexpr double kPi = std::numbers::pi;
 
-constexpr double radians(double angle_deg) { return angle_deg * (kPi / 180.0); }
-constexpr double degrees(double angle_rad) { return angle_rad * (180.0 / kPi); }
+constexpr double radians(double angle_deg) {
+  return angle_deg * (kPi / 180.0);
+}
+constexpr double degrees(double angle_rad) {
+  return angle_rad * (180.0 / kPi);
+}
 
 /// The same direction in [-pi, pi].
-inline double wrap_pi(double angle_rad) { return std::remainder(angle_rad, 2.0 * kPi); }
+inline double wrap_pi(double angle_rad) {
+  return std::remainder(angle_rad, 2.0 * kPi);
+}
 
 }  // namespace truebearing

@@ -9,6 +9,8 @@ double chi_square_quantile(double probability, double degrees_of_freedom) {
   return boost::math::quantile(boost::math::chi_squared(degrees_of_freedom), probability);
 }
 
-double normal_quantile(double probability) { return boost::math::quantile(boost::math::normal(), probability); }
+double normal_quantile(double probability) {
+  return boost::math::quantile(boost::math::normal(), probability);
+}
 
 }  // namespace truebearing

@@ -1,5 +1,5 @@
-// Random numbers: counter-based (Philox 4x64-10, Salmon et al. 2011), so that a stream is a pure function of its key and
-// Monte Carlo runs can be computed in any order on any thread.
+// Random numbers: counter-based (Philox 4x64-10, Salmon et al. 2011), so that a stream is a pure function of its key
+// and Monte Carlo runs can be computed in any order on any thread.
 //
 // A stream is keyed by (seed, role, run, stream). The role is part of the key, so that no choice of seeds can make
 // the tuning, training, validation and evaluation draws overlap.
@@ -41,7 +41,9 @@ class RandomStream {
   /// Uniform on [low, high).
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
   /// Uniform integer in [0, count), count >= 1.
-  std::uint64_t index(std::uint64_t count) { return static_cast<std::uint64_t>(uniform() * static_cast<double>(count)); }
+  std::uint64_t index(std::uint64_t count) {
+    return static_cast<std::uint64_t>(uniform() * static_cast<double>(count));
+  }
 
   /// Standard normal (Box and Muller 1958).
   double normal() {

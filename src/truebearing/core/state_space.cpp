@@ -16,7 +16,8 @@ int StateSpace::component_index(std::string_view component) const {
 }
 
 int StateSpace::quantity_index(std::string_view quantity) const {
-  const auto found = std::find_if(quantities.begin(), quantities.end(), [&](const Quantity& q) { return q.name == quantity; });
+  const auto found =
+      std::find_if(quantities.begin(), quantities.end(), [&](const Quantity& q) { return q.name == quantity; });
   return found == quantities.end() ? -1 : static_cast<int>(found - quantities.begin());
 }
 
@@ -26,9 +27,8 @@ const StateSpace& line_space() {
 }
 
 const StateSpace& plane_space() {
-  static const StateSpace space{"plane",
-                                {"east_m", "north_m", "east_mps", "north_mps"},
-                                {{"position_m", {0, 1}}, {"velocity_mps", {2, 3}}}};
+  static const StateSpace space{
+      "plane", {"east_m", "north_m", "east_mps", "north_mps"}, {{"position_m", {0, 1}}, {"velocity_mps", {2, 3}}}};
   return space;
 }
 

@@ -9,7 +9,7 @@
 namespace truebearing {
 
 struct Quantity {
-  std::string name;         ///< with its unit: "position_m"
+  std::string name;          ///< with its unit: "position_m"
   std::vector<int> indices;  ///< components of the state that make it up
   bool operator==(const Quantity&) const = default;
 };

@@ -15,11 +15,16 @@ enum class StepStatus : unsigned char {
 
 constexpr std::string_view to_string(StepStatus status) {
   switch (status) {
-    case StepStatus::ok: return "ok";
-    case StepStatus::rejected: return "rejected";
-    case StepStatus::coasted: return "coasted";
-    case StepStatus::unobservable: return "unobservable";
-    case StepStatus::failed: return "failed";
+    case StepStatus::ok:
+      return "ok";
+    case StepStatus::rejected:
+      return "rejected";
+    case StepStatus::coasted:
+      return "coasted";
+    case StepStatus::unobservable:
+      return "unobservable";
+    case StepStatus::failed:
+      return "failed";
   }
   return "unknown";
 }

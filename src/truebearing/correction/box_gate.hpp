@@ -1,7 +1,7 @@
-// The box gate: how far a step lies inside the box that the training data filled. The sides of the box are the network's inputs, and the
-// disagreement: the Mahalanobis distance between what the network wants and the reference, under the sum of the two covariances. A
-// target that the inputs alone do not give away shows there: the network contradicts the trusted tracker as it never did in training.
-// The worst side decides.
+// The box gate: how far a step lies inside the box that the training data filled. The sides of the box are the
+// network's inputs, and the disagreement: the Mahalanobis distance between what the network wants and the reference,
+// under the sum of the two covariances. A target that the inputs alone do not give away shows there: the network
+// contradicts the trusted tracker as it never did in training. The worst side decides.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,8 +14,8 @@
 
 namespace truebearing {
 
-/// How far apart two estimates are, d (n), for what they claim, P_a and P_b (n x n): the root of d' (P_a + P_b)^-1 d. NaN where that has
-/// no value.
+/// How far apart two estimates are, d (n), for what they claim, P_a and P_b (n x n): the root of d' (P_a + P_b)^-1 d.
+/// NaN where that has no value.
 inline double disagreement(const BoundedVector& d, const BoundedMatrix& P_a, const BoundedMatrix& P_b) {
   return std::sqrt(mahalanobis_squared(P_a + P_b, d));
 }
@@ -30,14 +30,15 @@ struct BoxGate {
 
   bool operator==(const BoxGate&) const = default;
 
-  /// g in [0, 1] for inputs (d) and a disagreement: 1 inside the box, falling as exp(-excess^2 / 2) outside, the excess measured in
-  /// edge widths; 0 where a number is not finite.
+  /// g in [0, 1] for inputs (d) and a disagreement: 1 inside the box, falling as exp(-excess^2 / 2) outside, the excess
+  /// measured in edge widths; 0 where a number is not finite.
   double weight(const FuzzyNetwork::Inputs& inputs, double found_disagreement) const {
     if (!inputs.allFinite()) return 0.0;
     double worst = 0.0;
     if (std::isfinite(largest_disagreement)) {
       if (!std::isfinite(found_disagreement)) return 0.0;
-      worst = std::max(found_disagreement - largest_disagreement, 0.0) / (disagreement_edge_fraction * largest_disagreement);
+      worst = std::max(found_disagreement - largest_disagreement, 0.0) /
+              (disagreement_edge_fraction * largest_disagreement);
     }
     for (Eigen::Index i = 0; i < low.size(); ++i) {
       const double outside = std::max({low[i] - inputs[i], inputs[i] - high[i], 0.0});

@@ -42,7 +42,8 @@ void Correction::reset() {
 
 FeatureExtractor& Correction::extractor_of(int track) {
   auto slot = std::find_if(tracks_.begin(), tracks_.end(), [&](const Track& t) { return t.id == track; });
-  if (slot == tracks_.end()) slot = std::find_if(tracks_.begin(), tracks_.end(), [](const Track& t) { return !t.seen; });
+  if (slot == tracks_.end())
+    slot = std::find_if(tracks_.begin(), tracks_.end(), [](const Track& t) { return !t.seen; });
   if (slot == tracks_.end()) slot = tracks_.insert(tracks_.end(), Track{track, true, prototype_});
   slot->id = track;
   slot->seen = true;
@@ -53,7 +54,8 @@ std::span<const StepRecord> Correction::correct(const Ensemble& ensemble) {
   const std::span<const StepRecord> references = ensemble.records(reference_);
   if (records_.size() < references.size()) records_.resize(references.size());
   for (Track& track : tracks_)
-    track.seen = std::any_of(references.begin(), references.end(), [&](const StepRecord& r) { return r.track == track.id; });
+    track.seen =
+        std::any_of(references.begin(), references.end(), [&](const StepRecord& r) { return r.track == track.id; });
 
   for (std::size_t i = 0; i < references.size(); ++i) {
     const StepRecord& reference = references[i];
@@ -89,7 +91,8 @@ void Correction::correct_record(const StepRecord& base, const StepRecord& refere
 
   const BoundedVector x = reference.x + g * limited.d;
   // Written as a change of P_reference: nothing to correct leaves the covariance as it is, to the bit.
-  const BoundedMatrix P = reference.P + g * (P_c - reference.P) + g * (1.0 - g) * limited.d.lazyProduct(limited.d.transpose());
+  const BoundedMatrix P =
+      reference.P + g * (P_c - reference.P) + g * (1.0 - g) * limited.d.lazyProduct(limited.d.transpose());
   if (!x.allFinite() || !is_covariance(P)) return;  // numbers of any size may overflow or cancel: g = 0
   corrected.x = x;
   corrected.P = P;

@@ -3,7 +3,8 @@
 //     x_corrected = x_reference + g limit_kappa(x_base + network(features) - x_reference)
 //     P_corrected = g P_c + (1 - g) P_reference + g (1 - g) d d',   P_c = (sum_j phi_j inflation_j) P_source,
 //
-// with d the limited difference of the two means and g the weight of the box gate. It is open loop: nothing is written back into any tracker.
+// with d the limited difference of the two means and g the weight of the box gate. It is open loop: nothing is written
+// back into any tracker.
 #pragma once
 
 #include <memory>

@@ -19,8 +19,8 @@ void CorrectionModel::validate() const {
   const Eigen::Index M = network.rules();
   const Eigen::Index n = space ? space->size() : 0;
   require(n > 0, "state", "has no components", "a state space");
-  require(network.inputs() == d, "features", fmt::format("{} of them for a network with {} inputs", d, network.inputs()),
-          "one feature per input");
+  require(network.inputs() == d, "features",
+          fmt::format("{} of them for a network with {} inputs", d, network.inputs()), "one feature per input");
   require(network.outputs() == n, "rules", fmt::format("consequents of {} numbers", network.outputs()),
           fmt::format("{}, one per component of the state", n));
   require(!base.empty() && !reference.empty() && !covariance_of.empty(), "trackers", "a name is empty",
@@ -38,8 +38,9 @@ void CorrectionModel::validate() const {
             "gate", "low and high do not make a box", fmt::format("{} finite numbers each, low <= high", d));
     require(gate->largest_disagreement > 0.0, "gate.largest_disagreement",
             fmt::format("is {}", gate->largest_disagreement), "a number > 0, or null for none");
-    require(gate->disagreement_edge_fraction > 0.0 && gate->disagreement_edge_fraction <= 10.0, "gate.disagreement_edge_fraction",
-            fmt::format("is {}", gate->disagreement_edge_fraction), "a number in (0, 10]");
+    require(gate->disagreement_edge_fraction > 0.0 && gate->disagreement_edge_fraction <= 10.0,
+            "gate.disagreement_edge_fraction", fmt::format("is {}", gate->disagreement_edge_fraction),
+            "a number in (0, 10]");
     require(gate->edge_fraction > 0.0 && gate->edge_fraction <= 10.0, "gate.edge_fraction",
             fmt::format("is {}", gate->edge_fraction), "a number in (0, 10]");
   }

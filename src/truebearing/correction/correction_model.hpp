@@ -25,7 +25,7 @@ struct CorrectionModel {
 
   std::vector<FeatureSpec> features;
   FuzzyNetwork network;
-  std::optional<BoxGate> gate;                              ///< absent: always open
+  std::optional<BoxGate> gate;                             ///< absent: always open
   double kappa = std::numeric_limits<double>::infinity();  ///< infinity: not limited
   Eigen::VectorXd inflation;  ///< (M), > 0: P_correction = (sum_j phi_j inflation_j) P of `covariance_of`
 

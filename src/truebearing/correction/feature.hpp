@@ -11,12 +11,13 @@
 namespace truebearing {
 
 enum class FeatureKind {
-  log_step,               ///< ln k, k the number of steps of this track in which the base used its measurement, 1 before the first
-  gain,                   ///< K[component, 0]
-  residual,               ///< z - x[component], after the update
+  log_step,  ///< ln k, k the number of steps of this track in which the base used its measurement, 1 before the first
+  gain,      ///< K[component, 0]
+  residual,  ///< z - x[component], after the update
   prediction_difference,  ///< x_pred[component] - x[component]
   innovation,             ///< e = nu_0 / sqrt(S_00), the normalised innovation
-  innovation_average,     ///< a <- (1 - alpha) a + alpha e, divided by sqrt(alpha / (2 - alpha)), its deviation if e is white
+  innovation_average,     ///< a <- (1 - alpha) a + alpha e, divided by sqrt(alpha / (2 - alpha)), its deviation if e is
+                          ///< white
   log_nis_average,        ///< ln(offset + a), a <- (1 - alpha) a + alpha NIS
   log_mean_nis,           ///< ln(offset + mean of the NIS of this track so far)
   estimate,               ///< x[component] / scale
@@ -29,9 +30,9 @@ struct FeatureSpec {
   std::string component;  ///< of the state, where the kind has one
   /// The tracker that the base is compared with; for other features, whose record they are of: empty for the base's.
   std::string companion;
-  double alpha = 0.0;     ///< weight of the newest value in an average, (0, 1]
-  double offset = 0.0;    ///< inside a logarithm, > 0
-  double scale = 1.0;     ///< divisor, in the units of the component, > 0
+  double alpha = 0.0;   ///< weight of the newest value in an average, (0, 1]
+  double offset = 0.0;  ///< inside a logarithm, > 0
+  double scale = 1.0;   ///< divisor, in the units of the component, > 0
 
   bool operator==(const FeatureSpec&) const = default;
 };
@@ -55,8 +56,8 @@ struct FeatureNeeds {
 };
 FeatureNeeds needs_of(FeatureKind kind);
 
-/// +1 where the feature is the same for a mirrored target (every component of the state with its sign changed), -1 where it
-/// changes sign.
+/// +1 where the feature is the same for a mirrored target (every component of the state with its sign changed), -1
+/// where it changes sign.
 int mirror_parity(FeatureKind kind);
 
 /// A short name for tables and sentences: "difference of wide in velocity_mps".

@@ -37,7 +37,8 @@ void check(const FeatureSpec& feature, const StateSpace& space, const FeatureExt
 
 }  // namespace
 
-FeatureExtractor::FeatureExtractor(std::vector<FeatureSpec> features, const StateSpace& space, const BlocksOf& blocks_of)
+FeatureExtractor::FeatureExtractor(std::vector<FeatureSpec> features, const StateSpace& space,
+                                   const BlocksOf& blocks_of)
     : features_(std::move(features)) {
   if (features_.empty() || features_.size() > FuzzyNetwork::kMaxInputs)
     throw InputError("features", fmt::format("there are {}", features_.size()),
@@ -55,7 +56,9 @@ FeatureExtractor::FeatureExtractor(std::vector<FeatureSpec> features, const Stat
   }
 }
 
-void FeatureExtractor::reset() { track_ = -1; }
+void FeatureExtractor::reset() {
+  track_ = -1;
+}
 
 void FeatureExtractor::begin_track(int track) {
   track_ = track;
@@ -63,7 +66,8 @@ void FeatureExtractor::begin_track(int track) {
   for (Term& term : terms_) term.memory = term.used = 0.0;
 }
 
-void FeatureExtractor::extract(const StepRecord& base, std::span<const StepRecord* const> companions, Features& features) {
+void FeatureExtractor::extract(const StepRecord& base, std::span<const StepRecord* const> companions,
+                               Features& features) {
   if (base.track != track_) begin_track(base.track);
   if (base.status == StepStatus::ok) steps_ += 1.0;
   features.resize(size());
@@ -88,33 +92,46 @@ void FeatureExtractor::remember(Term& term, const StepRecord& record) {
     case FeatureKind::gain:
       if (record.gain) memory = (*record.gain)(term.component, 0);
       break;
-    case FeatureKind::residual: memory = innovation.z[0] - record.x[term.component]; break;
+    case FeatureKind::residual:
+      memory = innovation.z[0] - record.x[term.component];
+      break;
     case FeatureKind::prediction_difference:
       if (record.prediction) memory = record.prediction->x[term.component] - record.x[term.component];
       break;
-    case FeatureKind::innovation: memory = innovation.nu[0] / std::sqrt(innovation.S(0, 0)); break;
+    case FeatureKind::innovation:
+      memory = innovation.nu[0] / std::sqrt(innovation.S(0, 0));
+      break;
     case FeatureKind::innovation_average:
       memory += term.alpha * (innovation.nu[0] / std::sqrt(innovation.S(0, 0)) - memory);
       break;
-    case FeatureKind::log_nis_average: memory += term.alpha * (innovation.nis - memory); break;
-    case FeatureKind::log_mean_nis: memory += (innovation.nis - memory) / term.used; break;
+    case FeatureKind::log_nis_average:
+      memory += term.alpha * (innovation.nis - memory);
+      break;
+    case FeatureKind::log_mean_nis:
+      memory += (innovation.nis - memory) / term.used;
+      break;
     case FeatureKind::log_step:
     case FeatureKind::estimate:
-    case FeatureKind::companion_difference: break;
+    case FeatureKind::companion_difference:
+      break;
   }
 }
 
 double FeatureExtractor::value(const Term& term, const StepRecord& base, const StepRecord* companion, double steps) {
   if (term.companion >= 0 && !companion) return std::numeric_limits<double>::quiet_NaN();
   switch (term.kind) {
-    case FeatureKind::log_step: return std::log(std::max(steps, 1.0));
+    case FeatureKind::log_step:
+      return std::log(std::max(steps, 1.0));
     case FeatureKind::gain:
     case FeatureKind::residual:
     case FeatureKind::prediction_difference:
-    case FeatureKind::innovation: return term.memory;
-    case FeatureKind::innovation_average: return term.memory / std::sqrt(term.alpha / (2.0 - term.alpha));
+    case FeatureKind::innovation:
+      return term.memory;
+    case FeatureKind::innovation_average:
+      return term.memory / std::sqrt(term.alpha / (2.0 - term.alpha));
     case FeatureKind::log_nis_average:
-    case FeatureKind::log_mean_nis: return std::log(term.offset + term.memory);
+    case FeatureKind::log_mean_nis:
+      return std::log(term.offset + term.memory);
     case FeatureKind::estimate: {
       const BoundedVector& x = companion ? companion->x : base.x;
       return x.size() == base.x.size() ? x[term.component] / term.scale : std::numeric_limits<double>::quiet_NaN();

@@ -1,5 +1,5 @@
-// FeatureExtractor: from the records of a base tracker and its companions to the inputs of a network. Training and tracking
-// share this one class, so that both see the same numbers.
+// FeatureExtractor: from the records of a base tracker and its companions to the inputs of a network. Training and
+// tracking share this one class, so that both see the same numbers.
 #pragma once
 
 #include <functional>
@@ -22,7 +22,8 @@ class FeatureExtractor {
   using BlocksOf = std::function<RecordBlocks(const std::string&)>;
 
   /// space: of the base's state. Throws InputError where a feature names a component that the space has not, a constant
-  /// is out of range, a block that it reads is not in its tracker's records, or there are more features than a network takes.
+  /// is out of range, a block that it reads is not in its tracker's records, or there are more features than a network
+  /// takes.
   FeatureExtractor(std::vector<FeatureSpec> features, const StateSpace& space, const BlocksOf& blocks_of);
 
   const std::vector<FeatureSpec>& features() const { return features_; }

@@ -59,8 +59,8 @@ class FuzzyNetwork {
 
   Parameters parameters_;
   // The exponents as they are evaluated, -((u - c) / (sqrt(2) s))^2: column b d + i is input i of block b.
-  Blocks scaled_centres_;  // c / (sqrt(2) s)
-  Blocks inverse_widths_;  // 1 / (sqrt(2) s)
+  Blocks scaled_centres_;               // c / (sqrt(2) s)
+  Blocks inverse_widths_;               // 1 / (sqrt(2) s)
   Eigen::MatrixXd scaled_consequents_;  // (p x M), in the units of the outputs
 };
 

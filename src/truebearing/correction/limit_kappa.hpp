@@ -1,5 +1,5 @@
-// limit_kappa: the proven bound. Whatever a network says, the published estimate is at most kappa standard deviations of the
-// reference away from the reference.
+// limit_kappa: the proven bound. Whatever a network says, the published estimate is at most kappa standard deviations
+// of the reference away from the reference.
 #pragma once
 
 #include <cmath>
@@ -16,8 +16,9 @@ struct Limited {
   bool limited = false;
 };
 
-/// d (n) scaled down to a Mahalanobis length of at most kappa under P (n x n), the reference's covariance; zero where d or
-/// its length is not finite or P is not positive definite. kappa = infinity leaves a finite d as it is, and wants no P.
+/// d (n) scaled down to a Mahalanobis length of at most kappa under P (n x n), the reference's covariance; zero where d
+/// or its length is not finite or P is not positive definite. kappa = infinity leaves a finite d as it is, and wants no
+/// P.
 inline Limited limit_kappa(const BoundedMatrix& P, const BoundedVector& d, double kappa) {
   const double distance_sigmas = std::sqrt(mahalanobis_squared(P, d));
   const bool bounded = kappa < std::numeric_limits<double>::infinity();

@@ -21,7 +21,8 @@ constexpr int kVersion = 1;
 // One object of the file, read key by key; finish() refuses every key that nobody asked for.
 class ObjectReader {
  public:
-  ObjectReader(const Json& object, std::string file, std::string path) : object_(&object), file_(std::move(file)), path_(std::move(path)) {
+  ObjectReader(const Json& object, std::string file, std::string path)
+      : object_(&object), file_(std::move(file)), path_(std::move(path)) {
     if (!object.is_object()) throw InputError(file_ + (path_.empty() ? "" : ": " + path_), "is no object", "{ ... }");
   }
 
@@ -78,7 +79,8 @@ class ObjectReader {
 
  private:
   double finite(const Json& value, const std::string& key) const {
-    if (!value.is_number() || !std::isfinite(value.get<double>())) throw error(key, "holds " + value.dump().substr(0, 40), "finite numbers");
+    if (!value.is_number() || !std::isfinite(value.get<double>()))
+      throw error(key, "holds " + value.dump().substr(0, 40), "finite numbers");
     return value.get<double>();
   }
 
@@ -126,7 +128,9 @@ OrderedJson array_json(const Eigen::MatrixBase<Derived>& values) {
   return array;
 }
 
-OrderedJson limit_json(double limit) { return std::isfinite(limit) ? OrderedJson(limit) : OrderedJson(nullptr); }
+OrderedJson limit_json(double limit) {
+  return std::isfinite(limit) ? OrderedJson(limit) : OrderedJson(nullptr);
+}
 
 std::vector<std::string> read_texts(ObjectReader& object, const std::string& key, std::size_t high) {
   std::vector<std::string> texts;
@@ -206,9 +210,13 @@ CorrectionModel model_from(const Json& json, const std::string& name) {
 
 }  // namespace
 
-CorrectionModel read_model_file(const std::filesystem::path& path) { return model_from(read_json_file(path), path.string()); }
+CorrectionModel read_model_file(const std::filesystem::path& path) {
+  return model_from(read_json_file(path), path.string());
+}
 
-CorrectionModel parse_model(std::string_view text, const std::string& name) { return model_from(parse_json(text, name), name); }
+CorrectionModel parse_model(std::string_view text, const std::string& name) {
+  return model_from(parse_json(text, name), name);
+}
 
 std::string model_text(const CorrectionModel& model) {
   const FuzzyNetwork::Parameters& parameters = model.network.parameters();

@@ -1,5 +1,5 @@
-// The model file: a CorrectionModel as JSON, readable and editable by hand. Size, nesting, version, shapes and numbers are checked
-// before anything is built from it. save -> load -> save is byte-identical.
+// The model file: a CorrectionModel as JSON, readable and editable by hand. Size, nesting, version, shapes and numbers
+// are checked before anything is built from it. save -> load -> save is byte-identical.
 #pragma once
 
 #include <filesystem>

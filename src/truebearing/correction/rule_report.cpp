@@ -15,12 +15,15 @@ std::string unit_of(const std::string& component) {
 }
 
 // Three significant digits, without an exponent.
-std::string amount(double value) { return std::abs(value) >= 100.0 ? fmt::format("{:+.0f}", value) : fmt::format("{:+.3g}", value); }
+std::string amount(double value) {
+  return std::abs(value) >= 100.0 ? fmt::format("{:+.0f}", value) : fmt::format("{:+.3g}", value);
+}
 
 std::string amounts(const StateSpace& space, const Eigen::VectorXd& values) {
   std::string text;
   for (int i = 0; i < space.size(); ++i)
-    text += fmt::format("{}{} {}", i == 0 ? "" : ", ", amount(values[i]), unit_of(space.components[static_cast<std::size_t>(i)]));
+    text += fmt::format("{}{} {}", i == 0 ? "" : ", ", amount(values[i]),
+                        unit_of(space.components[static_cast<std::size_t>(i)]));
   return text;
 }
 
@@ -40,7 +43,8 @@ std::string rule_sentences(const CorrectionModel& model) {
   const FuzzyNetwork::Parameters& parameters = model.network.parameters();
   std::vector<Eigen::Index> order(static_cast<std::size_t>(model.network.rules()));
   std::iota(order.begin(), order.end(), Eigen::Index{0});
-  std::stable_sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) { return model.usage[a] > model.usage[b]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Eigen::Index a, Eigen::Index b) { return model.usage[a] > model.usage[b]; });
 
   std::string text;
   int number = 0;
@@ -48,10 +52,13 @@ std::string rule_sentences(const CorrectionModel& model) {
   for (const Eigen::Index rule : order) {
     std::string conditions;
     for (std::size_t i = 0; i < model.features.size(); ++i)
-      conditions += fmt::format("{}{} is {}", i == 0 ? "" : " AND ", describe(model.features[i]),
-                                term_word(parameters.centres(rule, static_cast<Eigen::Index>(i)), mirror_parity(model.features[i].kind)));
+      conditions += fmt::format(
+          "{}{} is {}", i == 0 ? "" : " AND ", describe(model.features[i]),
+          term_word(parameters.centres(rule, static_cast<Eigen::Index>(i)), mirror_parity(model.features[i].kind)));
     const FuzzyNetwork::Inputs centre =
-        (parameters.input_mean.array() + parameters.centres.row(rule).transpose().array() * parameters.input_scale.array()).matrix();
+        (parameters.input_mean.array() +
+         parameters.centres.row(rule).transpose().array() * parameters.input_scale.array())
+            .matrix();
     model.network.strengths(centre, phi);
     text += fmt::format("{}. IF {} THEN add {}   (usage {:.1f} %, teacher's mean {})\n", ++number, conditions,
                         amounts(*model.space, model.network.output(phi)), 100.0 * model.usage[rule],

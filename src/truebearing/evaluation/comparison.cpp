@@ -15,8 +15,8 @@ struct SetScores {
   std::vector<double> time_s;               // of the first run
 };
 
-SetScores run_set(const TrackerSet& trackers, const std::vector<Scorer>& scorers, const std::vector<NamedScenario>& scenarios,
-                  std::size_t index, const ComparisonOptions& options) {
+SetScores run_set(const TrackerSet& trackers, const std::vector<Scorer>& scorers,
+                  const std::vector<NamedScenario>& scenarios, std::size_t index, const ComparisonOptions& options) {
   const Scenario& scenario = *scenarios[index].scenario;
   SetScores set;
   set.runs.resize(options.runs);
@@ -47,7 +47,8 @@ Comparison summarise_runs(const TrackerSet& trackers, const std::vector<Scorer>&
   for (const std::vector<RunScore>* run : runs)
     for (std::size_t i = 0; i < scorers.size(); ++i) by_tracker[i].push_back(&(*run)[i]);
   for (std::size_t i = 0; i < scorers.size(); ++i)
-    comparison.trackers.push_back(summarise(trackers.name(static_cast<int>(i)), scorers[i], by_tracker[i], options.scoring));
+    comparison.trackers.push_back(
+        summarise(trackers.name(static_cast<int>(i)), scorers[i], by_tracker[i], options.scoring));
 
   const auto index_of = [&](const std::string& name) {
     for (int i = 0; i < trackers.size(); ++i)
@@ -69,7 +70,8 @@ const TrackerSummary* Comparison::tracker(const std::string& name) const {
   return nullptr;
 }
 
-Comparison compare(const TrackerSet& trackers, const std::vector<NamedScenario>& scenarios, const ComparisonOptions& options) {
+Comparison compare(const TrackerSet& trackers, const std::vector<NamedScenario>& scenarios,
+                   const ComparisonOptions& options) {
   std::vector<Scorer> scorers;
   for (int i = 0; i < trackers.size(); ++i)
     scorers.emplace_back(scenarios.front().scenario->truth_space(), trackers.space(i));

@@ -18,7 +18,7 @@ struct ComparisonOptions {
   int threads = 0;  ///< 0: one per core
   ScoringRule scoring;
   std::vector<std::pair<std::string, std::string>> pairs;  ///< "a - b" for each
-  std::vector<std::string> bounds;  ///< trackers that are bounds: reported as such too
+  std::vector<std::string> bounds;                         ///< trackers that are bounds: reported as such too
   Progress progress;
 };
 
@@ -45,9 +45,10 @@ struct NamedScenario {
   const Scenario* scenario;
 };
 
-/// Runs the trackers on `runs` evaluation runs of each scenario. With several, the figures are those over all of them together and
-/// `sets` has each by itself. The same for any number of threads.
-Comparison compare(const TrackerSet& trackers, const std::vector<NamedScenario>& scenarios, const ComparisonOptions& options);
+/// Runs the trackers on `runs` evaluation runs of each scenario. With several, the figures are those over all of them
+/// together and `sets` has each by itself. The same for any number of threads.
+Comparison compare(const TrackerSet& trackers, const std::vector<NamedScenario>& scenarios,
+                   const ComparisonOptions& options);
 
 /// Median time of a step of one tracker over `recording`, in nanoseconds.
 double time_per_step_ns(Tracker& tracker, const Recording& recording);

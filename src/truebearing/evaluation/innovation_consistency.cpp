@@ -48,7 +48,8 @@ double InnovationConsistency::correlation_limit() const {
 }
 
 bool InnovationConsistency::is_implausible_at_start() const {
-  // A badly chosen prior gives tens; metres taken for kilometres, or degrees for radians, give thousands, or thousandths.
+  // A badly chosen prior gives tens; metres taken for kilometres, or degrees for radians, give thousands, or
+  // thousandths.
   constexpr double kFactor = 100.0;
   if (first_steps_ == 0) return false;
   if (first_nis_sum_ > kFactor * chi_square_quantile(0.975, first_freedom_)) return true;

@@ -1,5 +1,5 @@
-// What can be said of a tracker without truth: whether its innovations are as large as it claims, and white. (Bar-Shalom, Li and
-// Kirubarajan 2001, sec. 5.4.2.)
+// What can be said of a tracker without truth: whether its innovations are as large as it claims, and white.
+// (Bar-Shalom, Li and Kirubarajan 2001, sec. 5.4.2.)
 #pragma once
 
 #include "truebearing/tracker/step_record.hpp"
@@ -20,8 +20,8 @@ class InnovationConsistency {
   /// they are white.
   double correlation() const;
   double correlation_limit() const;
-  /// True where the NIS of the first steps, used or gated, is so large or so small that a wrong unit or a wrong column is
-  /// likelier than chance.
+  /// True where the NIS of the first steps, used or gated, is so large or so small that a wrong unit or a wrong column
+  /// is likelier than chance.
   bool is_implausible_at_start() const;
 
  private:

@@ -9,9 +9,9 @@ namespace truebearing {
 /// Called with (runs done, runs in all), from one thread at a time. May be empty.
 using Progress = std::function<void(std::size_t, std::size_t)>;
 
-/// Calls body(run, worker) once for every run in [0, runs), on at most `threads` threads (0: one per core). Of two calls with the same
-/// worker number, in [0, worker_count(threads)), one ends before the other begins: state may be kept per worker.
-/// An exception in a body stops the rest and is thrown on.
+/// Calls body(run, worker) once for every run in [0, runs), on at most `threads` threads (0: one per core). Of two
+/// calls with the same worker number, in [0, worker_count(threads)), one ends before the other begins: state may be
+/// kept per worker. An exception in a body stops the rest and is thrown on.
 void monte_carlo(std::size_t runs, int threads, const std::function<void(std::size_t run, std::size_t worker)>& body,
                  const Progress& progress = {});
 

@@ -15,7 +15,9 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kPlain = "plain";
 
 // JSON has no NaN: what is not known is null.
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
 
 Json numbers(const std::vector<double>& values) {
   Json array = Json::array();
@@ -51,7 +53,8 @@ Json tracker_json(const Comparison& comparison, const TrackerSummary& summary) {
   json["nees"] = number(summary.nees);
   json["nees_expected"] = summary.dimension;
   json["coverage95"] = number(summary.coverage95);
-  if (plain) json["ratio_to_plain"] = by_quantity(summary, [&](const QuantitySummary& q) { return ratio_to(plain, q); });
+  if (plain)
+    json["ratio_to_plain"] = by_quantity(summary, [&](const QuantitySummary& q) { return ratio_to(plain, q); });
   for (const auto& [name, ns] : comparison.ns_per_step)
     if (name == summary.name) json["ns_per_step"] = number(ns);
   json["scored_steps"] = summary.scored_steps;
@@ -68,14 +71,18 @@ std::string unit_of(const std::string& quantity) {
   return unit == "mps" ? "m/s" : unit;
 }
 
-std::string name_of(const std::string& quantity) { return quantity.substr(0, quantity.rfind('_')); }
+std::string name_of(const std::string& quantity) {
+  return quantity.substr(0, quantity.rfind('_'));
+}
 
 // Three or four significant digits, without an exponent.
 std::string figure(double value) {
   if (!std::isfinite(value)) return "-";
   const double size = std::abs(value);
-  return size >= 1000.0 ? fmt::format("{:.0f}", value) : size >= 100.0 ? fmt::format("{:.1f}", value)
-       : size >= 10.0   ? fmt::format("{:.2f}", value) : fmt::format("{:.3f}", value);
+  return size >= 1000.0  ? fmt::format("{:.0f}", value)
+         : size >= 100.0 ? fmt::format("{:.1f}", value)
+         : size >= 10.0  ? fmt::format("{:.2f}", value)
+                         : fmt::format("{:.3f}", value);
 }
 
 // Columns padded to the widest cell; the first to the left, the others to the right.
@@ -101,9 +108,9 @@ using Columns = std::vector<QuantitySummary>;
 
 // The quantities of the tracker that has most of them: a raw measurement may lack the velocity.
 const Columns& columns_of(const Comparison& comparison) {
-  const auto most = std::max_element(comparison.trackers.begin(), comparison.trackers.end(), [](const auto& a, const auto& b) {
-    return a.quantities.size() < b.quantities.size();
-  });
+  const auto most =
+      std::max_element(comparison.trackers.begin(), comparison.trackers.end(),
+                       [](const auto& a, const auto& b) { return a.quantities.size() < b.quantities.size(); });
   return most->quantities;
 }
 
@@ -153,7 +160,8 @@ std::string tables(const Comparison& comparison) {
 // What a comparison, or one set of it, has to say besides where it comes from.
 void add_figures(const Comparison& comparison, Json& json) {
   json["trackers"] = Json::object();
-  for (const TrackerSummary& summary : comparison.trackers) json["trackers"][summary.name] = tracker_json(comparison, summary);
+  for (const TrackerSummary& summary : comparison.trackers)
+    json["trackers"][summary.name] = tracker_json(comparison, summary);
   json["bounds"] = Json::object();
   for (const std::string& name : comparison.bounds)
     if (const TrackerSummary* bound = comparison.tracker(name)) {

@@ -10,7 +10,8 @@ namespace truebearing {
 /// The table that the command line prints.
 std::string comparison_table(const Comparison& comparison);
 
-/// The results as JSON, indented, with a newline at the end. Byte for byte the same for the same comparison, timings aside.
+/// The results as JSON, indented, with a newline at the end. Byte for byte the same for the same comparison, timings
+/// aside.
 std::string comparison_json(const Comparison& comparison);
 
 }  // namespace truebearing

@@ -31,7 +31,8 @@ Scorer::Scorer(const StateSpace& truth, const StateSpace& estimate) {
     quantities_.push_back(std::move(places));
   }
   if (quantities_.empty())
-    throw InputError("scoring", "the truth (" + truth.name + ") and a tracker's state (" + estimate.name + ") have no quantity in common");
+    throw InputError("scoring", "the truth (" + truth.name + ") and a tracker's state (" + estimate.name +
+                                    ") have no quantity in common");
 }
 
 void Scorer::prepare(RunScore& score, std::size_t steps) const {
@@ -64,7 +65,8 @@ void Scorer::score_step(const BoundedVector& truth, const StepRecord& record, st
 std::vector<RunScore> score_recording(TrackerSet& trackers, const std::vector<Scorer>& scorers,
                                       const Recording& recording, const ScoringRule& rule) {
   if (recording.truth.size() != 1)
-    throw InputError("scoring", "the recording has the truth of " + std::to_string(recording.truth.size()) + " targets", "one");
+    throw InputError("scoring", "the recording has the truth of " + std::to_string(recording.truth.size()) + " targets",
+                     "one");
   const std::vector<BoundedVector>& truth = recording.truth.front().x;
   const std::size_t steps = recording.measurements.size();
   std::vector<RunScore> scores(scorers.size());

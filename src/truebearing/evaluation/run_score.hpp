@@ -1,5 +1,5 @@
-// RunScore: the errors of one tracker in one run, step by step. Everything that a comparison reports is made from these, so
-// that the order in which runs were computed cannot matter.
+// RunScore: the errors of one tracker in one run, step by step. Everything that a comparison reports is made from
+// these, so that the order in which runs were computed cannot matter.
 #pragma once
 
 #include <string>

@@ -26,7 +26,9 @@ SquaredErrors squared_errors(const std::vector<double>& errors) {
   return total;
 }
 
-double root_mean(const SquaredErrors& errors) { return errors.count > 0.0 ? std::sqrt(errors.sum / errors.count) : kNaN; }
+double root_mean(const SquaredErrors& errors) {
+  return errors.count > 0.0 ? std::sqrt(errors.sum / errors.count) : kNaN;
+}
 
 // Standard error of the pooled RMSE: the jackknife, one run left out at a time (Efron and Stein 1981).
 double jackknife_se(const std::vector<SquaredErrors>& runs, const SquaredErrors& total) {
@@ -115,7 +117,8 @@ TrackerSummary summarise(const std::string& name, const Scorer& scorer, const st
       count += 1.0;
     }
     if (!score->error.empty())
-      summary.scored_steps += std::count_if(score->error[0].begin(), score->error[0].end(), [](double e) { return !std::isnan(e); });
+      summary.scored_steps +=
+          std::count_if(score->error[0].begin(), score->error[0].end(), [](double e) { return !std::isnan(e); });
     summary.corrected_steps += score->corrected;
     gate_sum += score->gate_sum;
     limited += score->gate_limited;
@@ -139,7 +142,8 @@ std::vector<PairedDifference> paired_difference(const Scorer& scorer_a, const st
       if (scorer_a.quantities()[qa] != scorer_b.quantities()[qb]) continue;
       std::vector<double> values;
       for (std::size_t run = 0; run < a.size(); ++run) {
-        const double value = root_mean(squared_errors(a[run]->error[qa])) - root_mean(squared_errors(b[run]->error[qb]));
+        const double value =
+            root_mean(squared_errors(a[run]->error[qa])) - root_mean(squared_errors(b[run]->error[qb]));
         if (!std::isnan(value)) values.push_back(value);
       }
       const double n = static_cast<double>(values.size());

@@ -1,5 +1,5 @@
-// The figures that a comparison reports, from the scores of its runs. Definitions as they are printed in the README: `rmse` over runs and
-// scored steps, `rmse_se` by the jackknife over runs, `paired` over runs.
+// The figures that a comparison reports, from the scores of its runs. Definitions as they are printed in the README:
+// `rmse` over runs and scored steps, `rmse_se` by the jackknife over runs, `paired` over runs.
 #pragma once
 
 #include <string>
@@ -12,22 +12,22 @@ namespace truebearing {
 struct QuantitySummary {
   std::string name;
   double rmse = 0.0;
-  double rmse_se = 0.0;  ///< jackknife over runs; NaN for a single run
-  double median = 0.0;   ///< of the error norm over runs and scored steps
+  double rmse_se = 0.0;        ///< jackknife over runs; NaN for a single run
+  double median = 0.0;         ///< of the error norm over runs and scored steps
   std::vector<double> series;  ///< RMSE over runs at each step; NaN where not scored
 };
 
 struct TrackerSummary {
   std::string name;
   std::vector<QuantitySummary> quantities;
-  int dimension = 0;         ///< the expected NEES
-  double nees = 0.0;         ///< mean over runs and scored steps
-  double coverage95 = 0.0;   ///< share of them under the 95 % chi-square quantile
+  int dimension = 0;        ///< the expected NEES
+  double nees = 0.0;        ///< mean over runs and scored steps
+  double coverage95 = 0.0;  ///< share of them under the 95 % chi-square quantile
   double loss_rate = 0.0;
   long scored_steps = 0;
-  long corrected_steps = 0;      ///< of a corrected tracker, else 0
-  double limited_share = 0.0;    ///< share of the corrected steps that kappa limited
-  double mean_gate = 0.0;        ///< mean weight of the gate over the corrected steps
+  long corrected_steps = 0;    ///< of a corrected tracker, else 0
+  double limited_share = 0.0;  ///< share of the corrected steps that kappa limited
+  double mean_gate = 0.0;      ///< mean weight of the gate over the corrected steps
 
   const QuantitySummary* quantity(const std::string& quantity_name) const;
 };

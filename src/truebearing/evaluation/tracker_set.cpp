@@ -18,7 +18,9 @@ void TrackerSet::show_correction(std::string name, std::shared_ptr<const Correct
   entries_.push_back({std::move(name), base, static_cast<int>(corrections_.size()) - 1, {}});
 }
 
-const StateSpace& TrackerSet::space(int entry) const { return ensemble_.tracker(at(entry).member).space(); }
+const StateSpace& TrackerSet::space(int entry) const {
+  return ensemble_.tracker(at(entry).member).space();
+}
 
 void TrackerSet::step(const Measurement& measurement) {
   ensemble_.step(measurement);
@@ -27,7 +29,9 @@ void TrackerSet::step(const Measurement& measurement) {
                                          : corrections_[static_cast<std::size_t>(entry.correction)].correct(ensemble_);
 }
 
-TrackerCounts TrackerSet::counts(int entry) const { return ensemble_.tracker(at(entry).member).counts(); }
+TrackerCounts TrackerSet::counts(int entry) const {
+  return ensemble_.tracker(at(entry).member).counts();
+}
 
 void TrackerSet::reset() {
   ensemble_.reset();

@@ -1,5 +1,5 @@
-// TrackerSet: the trackers of one comparison. Plain and corrected ones share one ensemble, so that each filter runs once however many
-// corrections look at it.
+// TrackerSet: the trackers of one comparison. Plain and corrected ones share one ensemble, so that each filter runs
+// once however many corrections look at it.
 #pragma once
 
 #include <span>

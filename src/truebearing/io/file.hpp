@@ -11,8 +11,9 @@ namespace truebearing {
 /// The text of a file of at most max_bytes. Throws InputError where it is missing, unreadable or larger.
 std::string read_text_file(const std::filesystem::path& path, std::size_t max_bytes);
 
-/// Writes to a temporary name of its own beside `path`, flushes it to disk and renames it: after a crash, a full disk or a
-/// second writer, the file is the old one or one writer's whole text. Throws InputError; leaves nothing behind on failure.
+/// Writes to a temporary name of its own beside `path`, flushes it to disk and renames it: after a crash, a full disk
+/// or a second writer, the file is the old one or one writer's whole text. Throws InputError; leaves nothing behind on
+/// failure.
 void write_file_atomically(const std::filesystem::path& path, std::string_view text);
 
 }  // namespace truebearing

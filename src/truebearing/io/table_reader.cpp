@@ -16,13 +16,20 @@ constexpr int kMaxDepth = 64;
 
 std::string type_name(const toml::node& node) {
   switch (node.type()) {
-    case toml::node_type::string: return "text";
-    case toml::node_type::integer: return "an integer";
-    case toml::node_type::floating_point: return "a number";
-    case toml::node_type::boolean: return "true or false";
-    case toml::node_type::array: return "an array";
-    case toml::node_type::table: return "a table";
-    default: return "a date or time";
+    case toml::node_type::string:
+      return "text";
+    case toml::node_type::integer:
+      return "an integer";
+    case toml::node_type::floating_point:
+      return "a number";
+    case toml::node_type::boolean:
+      return "true or false";
+    case toml::node_type::array:
+      return "an array";
+    case toml::node_type::table:
+      return "a table";
+    default:
+      return "a date or time";
   }
 }
 
@@ -56,9 +63,13 @@ int nesting_of_text(std::string_view text) {
   int open = 0, dots = 0, deepest = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
     switch (text[i]) {
-      case '#': i = std::min(text.find('\n', i), text.size()) - 1; break;
+      case '#':
+        i = std::min(text.find('\n', i), text.size()) - 1;
+        break;
       case '"':
-      case '\'': i = end_of_string(text, i); break;
+      case '\'':
+        i = end_of_string(text, i);
+        break;
       case '[':
       case '{':
         ++open;
@@ -69,11 +80,16 @@ int nesting_of_text(std::string_view text) {
         --open;
         dots = 0;
         break;
-      case '.': ++dots; break;
+      case '.':
+        ++dots;
+        break;
       case '=':
       case ',':
-      case '\n': dots = 0; break;
-      default: break;
+      case '\n':
+        dots = 0;
+        break;
+      default:
+        break;
     }
     deepest = std::max({deepest, open, dots});
   }
@@ -96,7 +112,8 @@ bool contains(Range range, double value) {
 
 toml::table parse_toml(std::string_view text, const std::string& name) {
   if (text.size() > kMaxTomlBytes)
-    throw InputError(name, fmt::format("is {} bytes long", text.size()), fmt::format("at most {} bytes", kMaxTomlBytes));
+    throw InputError(name, fmt::format("is {} bytes long", text.size()),
+                     fmt::format("at most {} bytes", kMaxTomlBytes));
   const InputError too_deep(name, "is nested too deeply", fmt::format("at most {} levels", kMaxDepth));
   if (nesting_of_text(text) > kMaxDepth) throw too_deep;
   try {
@@ -132,7 +149,9 @@ const toml::node* TableReader::node(const std::string& key) {
   return table_->get(key);
 }
 
-bool TableReader::has(const std::string& key) { return node(key) != nullptr; }
+bool TableReader::has(const std::string& key) {
+  return node(key) != nullptr;
+}
 
 const toml::node& TableReader::required(const std::string& key) {
   const toml::node* found = node(key);
@@ -161,7 +180,8 @@ std::int64_t TableReader::integer(const std::string& key, std::int64_t low, std:
   return value->get();
 }
 
-std::int64_t TableReader::integer_or(const std::string& key, std::int64_t fallback, std::int64_t low, std::int64_t high) {
+std::int64_t TableReader::integer_or(const std::string& key, std::int64_t fallback, std::int64_t low,
+                                     std::int64_t high) {
   return has(key) ? integer(key, low, high) : fallback;
 }
 
@@ -190,7 +210,8 @@ std::string TableReader::choice(const std::string& key, const std::vector<std::s
   return value;
 }
 
-std::string TableReader::choice_or(const std::string& key, const std::vector<std::string>& valid, std::string fallback) {
+std::string TableReader::choice_or(const std::string& key, const std::vector<std::string>& valid,
+                                   std::string fallback) {
   return has(key) ? choice(key, valid) : std::move(fallback);
 }
 
@@ -263,8 +284,7 @@ std::vector<std::string> TableReader::keys() const {
 
 void TableReader::finish() const {
   for (const std::string& key : keys())
-    if (!asked_.contains(key))
-      throw error(key, "is not a known key", suggestion(key, {asked_.begin(), asked_.end()}));
+    if (!asked_.contains(key)) throw error(key, "is not a known key", suggestion(key, {asked_.begin(), asked_.end()}));
 }
 
 std::filesystem::path TableReader::resolve(const std::string& relative) const {

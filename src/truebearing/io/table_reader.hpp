@@ -30,7 +30,8 @@ toml::table parse_toml(std::string_view text, const std::string& name);
 
 class TableReader {
  public:
-  /// `file` and `path` are what messages call the table: "study.toml", "trackers.plain". The table must outlive the reader.
+  /// `file` and `path` are what messages call the table: "study.toml", "trackers.plain". The table must outlive the
+  /// reader.
   TableReader(const toml::table& table, std::string file, std::string path = {});
 
   bool has(const std::string& key);

@@ -1,5 +1,5 @@
-// One measurement as it comes from a sensor or a log: a small vector with its time, its own standard deviations where the
-// sensor gives them, and where the sensor was.
+// One measurement as it comes from a sensor or a log: a small vector with its time, its own standard deviations where
+// the sensor gives them, and where the sensor was.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,7 +10,7 @@
 namespace truebearing {
 
 struct SensorState {
-  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();   ///< East, North
+  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< East, North
   Eigen::Vector2d velocity_mps = Eigen::Vector2d::Zero();
 };
 

@@ -25,8 +25,8 @@ struct Recording {
 
   /// What was found and mended while a log was read.
   struct Counts {
-    int missing = 0;     ///< rows without a usable measurement
-    int repeated = 0;    ///< rows identical to the one before, dropped
+    int missing = 0;   ///< rows without a usable measurement
+    int repeated = 0;  ///< rows identical to the one before, dropped
   } counts;
 };
 

@@ -1,4 +1,5 @@
-// A TOML value on one line, keys sorted, numbers as doubles: how a model file remembers the trackers it was trained for.
+// A TOML value on one line, keys sorted, numbers as doubles: how a model file remembers the trackers it was trained
+// for.
 #pragma once
 
 #include <string>

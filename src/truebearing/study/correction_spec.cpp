@@ -47,13 +47,13 @@ TrainingSpec read_training(TableReader& table) {
 std::optional<GateSpec> read_gate(TableReader& table) {
   GateSpec gate;
   const toml::node* node = table.node("gate");
-  if (!node || node->is_boolean())
-    return table.boolean_or("gate", true) ? std::optional<GateSpec>(gate) : std::nullopt;
+  if (!node || node->is_boolean()) return table.boolean_or("gate", true) ? std::optional<GateSpec>(gate) : std::nullopt;
   TableReader sub = table.table("gate");
   gate.quantile = sub.number_or("quantile", gate.quantile, {0.0, 0.25});
   gate.edge_fraction = sub.number_or("edge_fraction", gate.edge_fraction, {0.0, 10.0, true});
   gate.disagreement_quantile = sub.number_or("disagreement_quantile", gate.disagreement_quantile, {0.0, 0.5});
-  gate.disagreement_edge_fraction = sub.number_or("disagreement_edge_fraction", gate.disagreement_edge_fraction, {0.0, 10.0, true});
+  gate.disagreement_edge_fraction =
+      sub.number_or("disagreement_edge_fraction", gate.disagreement_edge_fraction, {0.0, 10.0, true});
   sub.finish();
   return gate;
 }
@@ -81,7 +81,8 @@ CorrectionSpec read_correction_spec(TableReader& table) {
   spec.gate = read_gate(table);
   spec.model = table.resolve(table.text("model"));
   for (TableReader& feature : table.tables("features")) spec.features.push_back(read_feature(feature));
-  if (spec.features.empty()) throw table.error("features", "is missing or empty", "an array of tables with a `kind` each");
+  if (spec.features.empty())
+    throw table.error("features", "is missing or empty", "an array of tables with a `kind` each");
   TableReader training = table.table("training");
   spec.training = read_training(training);
   return spec;

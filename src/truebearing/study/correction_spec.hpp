@@ -1,4 +1,5 @@
-// What a study says of a correction: which trackers it looks at, with which features, and how it is trained. Plain data.
+// What a study says of a correction: which trackers it looks at, with which features, and how it is trained. Plain
+// data.
 #pragma once
 
 #include <cstdint>
@@ -21,21 +22,22 @@ struct TrainingSpec {
   };
   Method method = Method::variable_projection;
   std::size_t runs = 400;
-  int from_step = 1;          ///< number of the first step taught, counted from 1
-  bool mirror = false;        ///< teach every run and its mirror image
-  int rules = 16;             ///< variable projection
+  int from_step = 1;    ///< number of the first step taught, counted from 1
+  bool mirror = false;  ///< teach every run and its mirror image
+  int rules = 16;       ///< variable projection
   int iterations = 150;
   double learning_rate = 0.05;
   double ridge = 1e-3;
-  int terms_per_input = 3;    ///< back-propagation
+  int terms_per_input = 3;  ///< back-propagation
   int epochs = 300;
   double momentum = 0.0;
 };
 
 struct GateSpec {
-  double quantile = 0.001;     ///< the box leaves out this share of the training data at either end of each feature
+  double quantile = 0.001;  ///< the box leaves out this share of the training data at either end of each feature
   double edge_fraction = 0.1;
-  double disagreement_quantile = 0.005;  ///< and this share of the corrections, those that disagreed most with the reference
+  double disagreement_quantile =
+      0.005;  ///< and this share of the corrections, those that disagreed most with the reference
   double disagreement_edge_fraction = 0.05;
 };
 

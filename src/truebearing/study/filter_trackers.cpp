@@ -17,8 +17,8 @@
 namespace truebearing {
 namespace {
 
-// A study chooses at run time what the filters fix at compile time. Each of these reads one choice and calls `use` with a value
-// of the type that was chosen.
+// A study chooses at run time what the filters fix at compile time. Each of these reads one choice and calls `use` with
+// a value of the type that was chosen.
 
 template <typename Use>
 auto with_dimension(TableReader& table, const Use& use) {
@@ -122,8 +122,12 @@ const StateSpace& kinematic_space() {
 }
 
 // The hypotheses of a bank on the process noise: its covariance times `factor`.
-ContinuousWhiteNoise scaled(ContinuousWhiteNoise noise, double factor) { return {noise.q * factor}; }
-DiscreteWhiteNoise scaled(DiscreteWhiteNoise noise, double factor) { return {noise.sigma_a * std::sqrt(factor)}; }
+ContinuousWhiteNoise scaled(ContinuousWhiteNoise noise, double factor) {
+  return {noise.q * factor};
+}
+DiscreteWhiteNoise scaled(DiscreteWhiteNoise noise, double factor) {
+  return {noise.sigma_a * std::sqrt(factor)};
+}
 template <int N>
 FixedNoise<N> scaled(FixedNoise<N> noise, double factor) {
   noise.Q_per_step *= factor;
@@ -168,10 +172,12 @@ std::unique_ptr<Tracker> make_kalman_bank(TableReader& table) {
         x[1] = velocity_mps;
         PositionSensor<D> believed = sensor;
         believed.sigma_factor *= std::sqrt(variance_factor);
-        hypotheses.push_back({KalmanFilter<2 * D>(x, prior.P), Motion<D>{scaled(motion.noise, noise_factor)}, believed});
+        hypotheses.push_back(
+            {KalmanFilter<2 * D>(x, prior.P), Motion<D>{scaled(motion.noise, noise_factor)}, believed});
       }
   if (hypotheses.empty() || hypotheses.size() > 100000)
-    throw table.error("prior_velocities_mps", "makes a bank of " + std::to_string(hypotheses.size()), "1 to 100000 filters");
+    throw table.error("prior_velocities_mps", "makes a bank of " + std::to_string(hypotheses.size()),
+                      "1 to 100000 filters");
   return std::make_unique<Bank>(line_space(), std::move(hypotheses), prior.time_s);
 }
 
@@ -179,8 +185,9 @@ std::unique_ptr<Tracker> make_raw_tracker(TableReader& table) {
   const std::vector<std::string> components = table.texts("components");
   const std::vector<double> sigma = table.numbers("sigma", static_cast<int>(components.size()), kPositive);
   if (components.size() > kMaxDimension) throw table.error("components", "are too many", "at most 8");
-  return std::make_unique<RawTracker>(state_space_of_components(components),
-                                      BoundedVector(Eigen::Map<const Eigen::VectorXd>(sigma.data(), static_cast<Eigen::Index>(sigma.size()))));
+  return std::make_unique<RawTracker>(
+      state_space_of_components(components),
+      BoundedVector(Eigen::Map<const Eigen::VectorXd>(sigma.data(), static_cast<Eigen::Index>(sigma.size()))));
 }
 
 std::unique_ptr<Tracker> make_recorded_tracker(TableReader& table) {

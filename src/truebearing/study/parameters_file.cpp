@@ -23,8 +23,9 @@ std::string toml_text(std::string_view text) {
 }
 
 std::string toml_key(std::string_view name) {
-  const bool bare = !name.empty() && name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") ==
-                                         std::string_view::npos;
+  const bool bare =
+      !name.empty() && name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") ==
+                           std::string_view::npos;
   return bare ? std::string(name) : toml_text(name);
 }
 
@@ -47,15 +48,18 @@ ParametersFile read_parameters_file(const std::filesystem::path& path) {
 }
 
 std::string parameters_text(const ParametersFile& parameters) {
-  std::string text = "# Baseline parameters, written by `truebearing tune`. Studies name this file under `parameters`.\n";
+  std::string text =
+      "# Baseline parameters, written by `truebearing tune`. Studies name this file under `parameters`.\n";
   text += "\n[provenance]\n";
-  for (const auto& [name, value] : parameters.provenance) text += fmt::format("{} = {}\n", toml_key(name), toml_text(value));
+  for (const auto& [name, value] : parameters.provenance)
+    text += fmt::format("{} = {}\n", toml_key(name), toml_text(value));
   for (const auto& [name, values] : parameters.trackers) {
     text += fmt::format("\n[{}]\n", toml_key(name));
     for (const auto& [path, numbers] : values) {
       std::string list;
       for (const double value : numbers) list += fmt::format("{}{:.6g}", list.empty() ? "" : ", ", value);
-      text += numbers.size() == 1 ? fmt::format("{} = {}\n", toml_text(path), list) : fmt::format("{} = [{}]\n", toml_text(path), list);
+      text += numbers.size() == 1 ? fmt::format("{} = {}\n", toml_text(path), list)
+                                  : fmt::format("{} = [{}]\n", toml_text(path), list);
     }
   }
   return text;
@@ -71,7 +75,8 @@ std::vector<double> numbers_at(const toml::table& table, const std::string& path
   }
   if (values.empty()) throw InputError(where, "\"" + path + "\" is no number or array of numbers of the tracker");
   for (const double value : values)
-    if (!(value > 0.0)) throw InputError(where, fmt::format("\"{}\" holds {}", path, value), "numbers > 0 as a start for tuning");
+    if (!(value > 0.0))
+      throw InputError(where, fmt::format("\"{}\" holds {}", path, value), "numbers > 0 as a start for tuning");
   return values;
 }
 

@@ -1,4 +1,5 @@
-// The parameters file: baseline parameters that `truebearing tune` fitted, by tracker, as readable TOML that studies name.
+// The parameters file: baseline parameters that `truebearing tune` fitted, by tracker, as readable TOML that studies
+// name.
 //     [tuned]
 //     "motion.variance" = [3.1, 0.09]
 #pragma once

@@ -22,7 +22,8 @@ toml::table resolved(TableReader& trackers, const std::string& name, std::set<st
   TableReader table = trackers.table(name);
   if (!table.has("like")) return table.raw();
   const std::string parent = table.text("like");
-  if (!trackers.has(parent)) throw table.error("like", "names no tracker: \"" + parent + "\"", suggestion(parent, trackers.keys()));
+  if (!trackers.has(parent))
+    throw table.error("like", "names no tracker: \"" + parent + "\"", suggestion(parent, trackers.keys()));
   toml::table inherited = resolved(trackers, parent, seen);
   for (const char* key : {"tune", "show", "like"}) inherited.erase(key);
   return merged(inherited, table.raw());
@@ -141,7 +142,8 @@ void Study::read_trackers(TableReader table, const std::vector<std::string>& ord
     spec.shown = reader.boolean_or("show", true);
     if (reader.has("tune")) {
       spec.tune = reader.texts("tune");
-      for (const std::string& path : spec.tune) numbers_at(spec.configuration, path, table.file() + ": trackers." + name + ".tune");
+      for (const std::string& path : spec.tune)
+        numbers_at(spec.configuration, path, table.file() + ": trackers." + name + ".tune");
     }
     for (const char* key : kStudyKeys) reader.node(key);
     if (spec.kind == "corrected") {
@@ -164,8 +166,8 @@ void Study::check_trackers() {
     }
     for (const std::string& member : spec.correction->members())
       if (tracker(member).correction)
-        throw InputError(path_.string() + ": trackers." + spec.name, "looks at \"" + member + "\", which is itself corrected",
-                         "trackers of other kinds");
+        throw InputError(path_.string() + ": trackers." + spec.name,
+                         "looks at \"" + member + "\", which is itself corrected", "trackers of other kinds");
     // Features that the records cannot give are refused here, not at the first step.
     const auto made = [&](const std::string& name) {
       const TrackerSpec& member = tracker(name.empty() ? spec.correction->base : name);
@@ -173,7 +175,8 @@ void Study::check_trackers() {
       return truebearing::make_tracker(member.kind, reader);
     };
     try {
-      FeatureExtractor(spec.correction->features, made("")->space(), [&](const std::string& name) { return made(name)->blocks(); });
+      FeatureExtractor(spec.correction->features, made("")->space(),
+                       [&](const std::string& name) { return made(name)->blocks(); });
     } catch (const InputError& error) {
       throw InputError(path_.string() + ": trackers." + spec.name + ": " + error.where(), error.found(), error.valid());
     }
@@ -193,7 +196,8 @@ toml::table Study::configuration_of(const std::string& name) const {
   const std::string command = fmt::format("`truebearing tune {}`", path_.string());
   const TunedValues* values = nullptr;
   if (parameters_)
-    if (const auto found = parameters_->trackers.find(name); found != parameters_->trackers.end()) values = &found->second;
+    if (const auto found = parameters_->trackers.find(name); found != parameters_->trackers.end())
+      values = &found->second;
   if (!values)
     throw InputError(parameters_path_.empty() ? path_.string() : parameters_path_.string(),
                      "has no tuned parameters of \"" + name + "\"",
@@ -269,7 +273,8 @@ void Study::check_model(const std::string& name, const CorrectionModel& model, c
   if (model.features != spec.features) throw differs("other features than the study has for \"" + name + "\"");
   if (model.base != spec.base || model.reference != spec.reference || model.covariance_of != spec.covariance_of)
     throw differs("another base, reference or covariance_of");
-  if (model.kappa != spec.kappa) throw differs(fmt::format("kappa {}, where the study has {}", model.kappa, spec.kappa));
+  if (model.kappa != spec.kappa)
+    throw differs(fmt::format("kappa {}, where the study has {}", model.kappa, spec.kappa));
   for (const std::string& member : spec.members()) {
     const auto found = model.trackers.find(member);
     const std::string configuration = configuration_line(member);

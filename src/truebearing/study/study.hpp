@@ -1,5 +1,5 @@
-// A study: one comparison, from its TOML file. A scenario (fixed, or a family to draw from), the trackers, their corrections
-// and how those are trained, and what is scored. The factory of the house: it makes what the file names.
+// A study: one comparison, from its TOML file. A scenario (fixed, or a family to draw from), the trackers, their
+// corrections and how those are trained, and what is scored. The factory of the house: it makes what the file names.
 #pragma once
 
 #include <filesystem>
@@ -21,9 +21,9 @@ namespace truebearing {
 struct TrackerSpec {
   std::string name;
   std::string kind;
-  toml::table configuration;      ///< its table, over that of the tracker it is `like`
-  std::vector<std::string> tune;  ///< dotted paths of the numbers that `truebearing tune` fits
-  bool shown = true;              ///< false for companions that no table needs
+  toml::table configuration;                 ///< its table, over that of the tracker it is `like`
+  std::vector<std::string> tune;             ///< dotted paths of the numbers that `truebearing tune` fits
+  bool shown = true;                         ///< false for companions that no table needs
   std::optional<CorrectionSpec> correction;  ///< where kind is "corrected"
 };
 
@@ -67,8 +67,8 @@ class Study {
   /// All shown trackers over one ensemble; models from `models`, else from their files.
   TrackerSet make_tracker_set(const CorrectionModels& models = {}) const;
 
-  /// The model of a corrected tracker from its file, checked against this study. Throws InputError that names the command that
-  /// makes it where it is missing or was made for other trackers or features.
+  /// The model of a corrected tracker from its file, checked against this study. Throws InputError that names the
+  /// command that makes it where it is missing or was made for other trackers or features.
   std::shared_ptr<const CorrectionModel> load_model(const std::string& name) const;
   /// Throws InputError where the model was not trained for what the study says of that tracker.
   void check_model(const std::string& name, const CorrectionModel& model, const std::string& where) const;

@@ -1,4 +1,5 @@
-// The one table from names in study files to makers of trackers. It is open: a program registers its own before it reads a study.
+// The one table from names in study files to makers of trackers. It is open: a program registers its own before it
+// reads a study.
 #pragma once
 
 #include <functional>
@@ -11,8 +12,8 @@
 
 namespace truebearing {
 
-/// Makes a tracker from its table in a study. Keys that the maker does not ask for are errors; `kind`, `like`, `tune` and `show` are
-/// read by the study itself. Throws InputError.
+/// Makes a tracker from its table in a study. Keys that the maker does not ask for are errors; `kind`, `like`, `tune`
+/// and `show` are read by the study itself. Throws InputError.
 using TrackerMaker = std::function<std::unique_ptr<Tracker>(TableReader& configuration)>;
 
 /// Adds a kind of tracker. Throws InputError where the name is taken.

@@ -1,5 +1,5 @@
-// Ensemble: several trackers stepped on the same measurements, their records aligned by track. Everything that compares or
-// corrects trackers looks at one ensemble, so that no tracker runs twice.
+// Ensemble: several trackers stepped on the same measurements, their records aligned by track. Everything that compares
+// or corrects trackers looks at one ensemble, so that no tracker runs twice.
 #pragma once
 
 #include <memory>

@@ -1,7 +1,7 @@
-// A bank of filters under one prior each: hypotheses on what is unknown but constant (the mean of the prior, Q, R), weighted by
-// the likelihood of the innovations (Magill 1965; Bar-Shalom, Li and Kirubarajan 2001, sec. 11.6.2). With the family's own
-// distribution for the hypotheses its mean approximates E[x | z]: no estimator has a smaller mean squared error on that
-// family, so the bank is the bound that stands beside every corrected result.
+// A bank of filters under one prior each: hypotheses on what is unknown but constant (the mean of the prior, Q, R),
+// weighted by the likelihood of the innovations (Magill 1965; Bar-Shalom, Li and Kirubarajan 2001, sec. 11.6.2). With
+// the family's own distribution for the hypotheses its mean approximates E[x | z]: no estimator has a smaller mean
+// squared error on that family, so the bank is the bound that stands beside every corrected result.
 #pragma once
 
 #include <Eigen/LU>
@@ -81,8 +81,8 @@ class FilterBank final : public Tracker {
     double weight = 0.0;  // not normalised
   };
 
-  // The members at the end of a step of dt_s. They themselves stay at their last used measurement: a missing one leaves no trace
-  // in what follows, to the bit.
+  // The members at the end of a step of dt_s. They themselves stay at their last used measurement: a missing one leaves
+  // no trace in what follows, to the bit.
   StepStatus predict(double dt_s) {
     shown_ = members_;
     if (!(dt_s > 0.0)) return StepStatus::coasted;
@@ -94,7 +94,8 @@ class FilterBank final : public Tracker {
     return StepStatus::failed;
   }
 
-  // `failed` where no member can explain the measurement in finite numbers. One that cannot, where others can, has lost.
+  // `failed` where no member can explain the measurement in finite numbers. One that cannot, where others can, has
+  // lost.
   StepStatus weigh(const Measurement& measurement) {
     double largest = -kInfinity;
     for (std::size_t i = 0; i < shown_.size(); ++i) {

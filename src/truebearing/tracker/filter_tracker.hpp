@@ -1,5 +1,5 @@
-// FilterTracker makes a Tracker of a fixed-size filter, a motion model and a sensor. What the filter leaves open is decided
-// here: missing, repeated, late and gated measurements, long gaps, failed arithmetic.
+// FilterTracker makes a Tracker of a fixed-size filter, a motion model and a sensor. What the filter leaves open is
+// decided here: missing, repeated, late and gated measurements, long gaps, failed arithmetic.
 #pragma once
 
 #include <algorithm>
@@ -96,9 +96,9 @@ class FilterTracker final : public Tracker {
   std::span<const StepRecord> start_from(const Measurement& measurement) {
     if constexpr (2 * kMeasurements == kStates) {
       if (pending_ && measurement.time_s > pending_->time_s) {
-        const auto start = two_point_state<kMeasurements>(Vector(pending_->z), sensor_.model(*pending_).R(),
-                                                          Vector(measurement.z), sensor_.model(measurement).R(),
-                                                          measurement.time_s - pending_->time_s);
+        const auto start =
+            two_point_state<kMeasurements>(Vector(pending_->z), sensor_.model(*pending_).R(), Vector(measurement.z),
+                                           sensor_.model(measurement).R(), measurement.time_s - pending_->time_s);
         filter_.emplace(start.x, start.P);
         pending_.reset();
         filter_time_s_ = measurement.time_s;

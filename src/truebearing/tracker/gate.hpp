@@ -1,5 +1,5 @@
-// The validation gate: a measurement whose NIS passes the threshold is not used. Every rejection in a row widens the gate, so
-// that a filter that has lost its target finds back instead of locking itself out.
+// The validation gate: a measurement whose NIS passes the threshold is not used. Every rejection in a row widens the
+// gate, so that a filter that has lost its target finds back instead of locking itself out.
 #pragma once
 
 #include <limits>

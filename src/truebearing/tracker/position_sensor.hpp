@@ -6,8 +6,8 @@
 
 namespace truebearing {
 
-/// Measures the position components. The measurement's own standard deviations hold where it carries them, else `sigma_m`;
-/// either is multiplied by `sigma_factor`.
+/// Measures the position components. The measurement's own standard deviations hold where it carries them, else
+/// `sigma_m`; either is multiplied by `sigma_factor`.
 template <int D>
 struct PositionSensor {
   using Model = Position<D>;
@@ -16,7 +16,8 @@ struct PositionSensor {
   double sigma_factor = 1.0;
 
   Model model(const Measurement& measurement) const {
-    return Model{measurement.sigma.size() == D ? Sigma(sigma_factor * measurement.sigma) : Sigma(sigma_factor * sigma_m)};
+    return Model{measurement.sigma.size() == D ? Sigma(sigma_factor * measurement.sigma)
+                                               : Sigma(sigma_factor * sigma_m)};
   }
 };
 

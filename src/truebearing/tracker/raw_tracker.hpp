@@ -12,7 +12,8 @@ class RawTracker final : public Tracker {
   RawTracker(const StateSpace& space, BoundedVector sigma) : space_(&space), sigma_(std::move(sigma)) { reset(); }
 
   std::span<const StepRecord> step(const Measurement& measurement) override {
-    if (guard_.examine(measurement) != StreamGuard::Verdict::usable || measurement.z.size() != space_->size()) return {};
+    if (guard_.examine(measurement) != StreamGuard::Verdict::usable || measurement.z.size() != space_->size())
+      return {};
     const BoundedVector& sigma = measurement.sigma.size() == measurement.z.size() ? measurement.sigma : sigma_;
     record_.time_s = measurement.time_s;
     record_.x = measurement.z;

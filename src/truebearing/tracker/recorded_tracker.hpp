@@ -1,4 +1,5 @@
-// A tracker that ran elsewhere, replayed from its step log, so that it can be corrected and compared without being touched.
+// A tracker that ran elsewhere, replayed from its step log, so that it can be corrected and compared without being
+// touched.
 #pragma once
 
 #include <memory>

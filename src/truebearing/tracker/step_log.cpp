@@ -53,8 +53,8 @@ BoundedMatrix read_triangle(const CsvReader& csv, const std::vector<int>& column
 StepStatus read_status(const CsvReader& csv, int column) {
   if (column < 0) return StepStatus::ok;
   const std::string_view text = csv.text(static_cast<std::size_t>(column));
-  for (const StepStatus status : {StepStatus::ok, StepStatus::rejected, StepStatus::coasted, StepStatus::unobservable,
-                                  StepStatus::failed})
+  for (const StepStatus status :
+       {StepStatus::ok, StepStatus::rejected, StepStatus::coasted, StepStatus::unobservable, StepStatus::failed})
     if (text == to_string(status)) return status;
   throw csv.error(static_cast<std::size_t>(column), fmt::format("\"{}\" is no status", text),
                   "ok, rejected, coasted, unobservable, failed");
@@ -78,13 +78,16 @@ StepLog read_rows(CsvReader& csv, const std::string& tracker) {
   log.space = &state_space_of_components(components);
   const std::size_t n = components.size();
   const std::vector<int> P_columns = triangle_columns(csv, "P", n);
-  if (P_columns.empty()) throw InputError(csv.name(), "lacks columns of P", fmt::format("P_1_1 to P_{0}_{0}, upper triangle", n));
+  if (P_columns.empty())
+    throw InputError(csv.name(), "lacks columns of P", fmt::format("P_1_1 to P_{0}_{0}, upper triangle", n));
   const std::vector<int> z_columns = vector_columns(csv, "z");
   const std::vector<int> nu_columns = vector_columns(csv, "nu");
   const std::vector<int> S_columns = triangle_columns(csv, "S", nu_columns.size());
   const int status_column = csv.column("status");
   log.has_innovation = !nu_columns.empty() && z_columns.size() == nu_columns.size() && !S_columns.empty();
-  if (z_columns.size() > kMaxDimension) throw InputError(csv.name(), fmt::format("has {} columns z", z_columns.size()), fmt::format("at most {}", kMaxDimension));
+  if (z_columns.size() > kMaxDimension)
+    throw InputError(csv.name(), fmt::format("has {} columns z", z_columns.size()),
+                     fmt::format("at most {}", kMaxDimension));
 
   double last_time_s = -std::numeric_limits<double>::infinity();
   while (csv.next()) {
@@ -102,9 +105,11 @@ StepLog read_rows(CsvReader& csv, const std::string& tracker) {
     record.status = read_status(csv, status_column);
     record.x = read_vector(csv, x_columns);
     record.P = read_triangle(csv, P_columns, static_cast<Eigen::Index>(n));
-    if (!record.x.allFinite()) throw csv.error(static_cast<std::size_t>(x_columns[0]), "the state is not finite", "numbers");
+    if (!record.x.allFinite())
+      throw csv.error(static_cast<std::size_t>(x_columns[0]), "the state is not finite", "numbers");
     if (!is_covariance(record.P))
-      throw csv.error(static_cast<std::size_t>(P_columns[0]), "P is not symmetric positive semi-definite", "a covariance");
+      throw csv.error(static_cast<std::size_t>(P_columns[0]), "P is not symmetric positive semi-definite",
+                      "a covariance");
     if (log.has_innovation) {
       Innovation innovation{read_vector(csv, z_columns), read_vector(csv, nu_columns),
                             read_triangle(csv, S_columns, static_cast<Eigen::Index>(nu_columns.size())), 0.0};
@@ -143,7 +148,9 @@ StepLogWriter::StepLogWriter(const StateSpace& space, int measurements)
   add_triangle("S", measurements_);
 }
 
-void StepLogWriter::add(const std::string& tracker, const StepRecord& record) { rows_.push_back({tracker, record}); }
+void StepLogWriter::add(const std::string& tracker, const StepRecord& record) {
+  rows_.push_back({tracker, record});
+}
 
 std::string StepLogWriter::str() const {
   CsvWriter csv(header_);

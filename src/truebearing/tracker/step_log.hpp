@@ -1,6 +1,7 @@
-// The step log: what trackers did, as CSV. It is what `truebearing track -o` writes, and how a tracker that runs elsewhere (an existing
-// system, MATLAB, Stone Soup) joins the house. Columns: `time_s`, `track`, `x_<component>`, `P_<i>_<j>` (upper triangle, from 1), and
-// where they exist `tracker`, `status`, `z_<i>`, `nu_<i>`, `S_<i>_<j>`, `truth_<component>`.
+// The step log: what trackers did, as CSV. It is what `truebearing track -o` writes, and how a tracker that runs
+// elsewhere (an existing system, MATLAB, Stone Soup) joins the house. Columns: `time_s`, `track`, `x_<component>`,
+// `P_<i>_<j>` (upper triangle, from 1), and where they exist `tracker`, `status`, `z_<i>`, `nu_<i>`, `S_<i>_<j>`,
+// `truth_<component>`.
 #pragma once
 
 #include <filesystem>
@@ -18,8 +19,9 @@ struct StepLog {
   bool has_innovation = false;
 };
 
-/// The records of `tracker`, or of the whole file where that is empty. An innovation block is read where z, nu and S are all
-/// there. Throws InputError that names file and line: decreasing times, a covariance that is none, missing columns.
+/// The records of `tracker`, or of the whole file where that is empty. An innovation block is read where z, nu and S
+/// are all there. Throws InputError that names file and line: decreasing times, a covariance that is none, missing
+/// columns.
 StepLog read_step_log(const std::filesystem::path& path, const std::string& tracker = {});
 StepLog read_step_log(std::istream& stream, const std::string& name, const std::string& tracker = {});
 

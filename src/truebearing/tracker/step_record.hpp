@@ -1,5 +1,5 @@
-// StepRecord, the hub of the house: what one tracker did with one measurement for one target. A core that every tracker fills,
-// and optional blocks that say whether they are there. Absent is absent, never faked. No heap.
+// StepRecord, the hub of the house: what one tracker did with one measurement for one target. A core that every tracker
+// fills, and optional blocks that say whether they are there. Absent is absent, never faked. No heap.
 #pragma once
 
 #include <optional>
@@ -25,8 +25,8 @@ struct Innovation {
   double nis = 0.0;
 };
 
-/// What a correction did: how far the gate was open, whether kappa limited it, how far it moved the reference; and the base
-/// estimate that it started from.
+/// What a correction did: how far the gate was open, whether kappa limited it, how far it moved the reference; and the
+/// base estimate that it started from.
 struct CorrectionOutcome {
   double gate = 0.0;             ///< g in [0, 1]
   bool limited = false;          ///< limit_kappa shortened the correction, or turned a non-finite one into zero
@@ -48,7 +48,7 @@ struct StepRecord {
   std::optional<BoundedMatrix> gain;                ///< K (n x m)
   std::optional<BoundedVector> mode_probabilities;  ///< of a multiple-model tracker
   std::optional<SensorState> sensor;
-  std::optional<CorrectionOutcome> correction;      ///< of a corrected tracker
+  std::optional<CorrectionOutcome> correction;  ///< of a corrected tracker
 };
 
 }  // namespace truebearing

@@ -1,5 +1,5 @@
-// StreamGuard: what every tracker asks of a measurement before it looks at the value. Decides, from the times and values
-// alone, whether a measurement can be used, and counts the ones that cannot.
+// StreamGuard: what every tracker asks of a measurement before it looks at the value. Decides, from the times and
+// values alone, whether a measurement can be used, and counts the ones that cannot.
 #pragma once
 
 #include <cmath>
@@ -28,7 +28,8 @@ class StreamGuard {
       advance(measurement.time_s);
       return Verdict::missing;
     }
-    if (started_ && measurement.time_s == time_s_ && last_z_.size() == measurement.z.size() && last_z_ == measurement.z) {
+    if (started_ && measurement.time_s == time_s_ && last_z_.size() == measurement.z.size() &&
+        last_z_ == measurement.z) {
       ++counts.repeated;
       return Verdict::repeated;
     }

@@ -1,64 +1,24 @@
-// A corrected tracker that runs allocates nothing. Every allocation goes through malloc in the end: operator new,
-// Eigen, the library's own code however it was compiled. So that is where they are counted.
+// A corrected tracker that runs allocates nothing.
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
-#include <cstdlib>
 #include <string>
 
+#include "tests/support/allocation_count.hpp"
 #include "tests/support/correction_models.hpp"
 #include "tests/support/line_trackers.hpp"
 #include "truebearing/correction/corrected_tracker.hpp"
 #include "truebearing/evaluation/tracker_set.hpp"
 #include "truebearing/tracker/filter_bank.hpp"
 
-namespace {
-thread_local long allocations = 0;
-}
-
-#ifdef __SANITIZE_ADDRESS__
-// The sanitizer's allocator cannot be replaced; it tells of every allocation instead.
-extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*malloc_hook)(const volatile void*, std::size_t),
-                                                         void (*free_hook)(const volatile void*));
-namespace {
-[[maybe_unused]] const int hooks = __sanitizer_install_malloc_and_free_hooks(
-    [](const volatile void*, std::size_t) { ++allocations; }, [](const volatile void*) {});
-}
-#else
-extern "C" {
-void* __libc_malloc(std::size_t size);
-void* __libc_calloc(std::size_t count, std::size_t size);
-void* __libc_realloc(void* memory, std::size_t size);
-
-void* malloc(std::size_t size) {
-  ++allocations;
-  return __libc_malloc(size);
-}
-void* calloc(std::size_t count, std::size_t size) {
-  ++allocations;
-  return __libc_calloc(count, size);
-}
-void* realloc(void* memory, std::size_t size) {
-  ++allocations;
-  return __libc_realloc(memory, size);
-}
-}
-#endif
-
 namespace truebearing {
 namespace {
 
+using testing::allocations_of;
 using testing::kNaN;
 using testing::position;
 using testing::radar_log;
 using testing::RadarFilter;
-
-template <typename Action>
-long allocations_of(const Action& action) {
-  const long before = allocations;
-  action();
-  return allocations - before;
-}
 
 // What keeps the tests below honest: each way to the heap is seen.
 TEST(Allocation, IsCounted) {
@@ -114,6 +74,20 @@ long allocations_of_second_pass(Tracker& tracker) {
   return allocations_of([&] {
     for (std::size_t k = 5; k < log.size(); ++k) tracker.step(log[k]);
   });
+}
+
+TEST(FuzzyNetwork, EvaluationAllocatesNothing) {
+  RandomStream random({}, StreamId::test);
+  const FuzzyNetwork network(testing::random_parameters(random, 4, 16, 2));
+  const FuzzyNetwork::Inputs input = FuzzyNetwork::Inputs::NullaryExpr(4, [&] { return random.normal(); });
+  FuzzyNetwork::Strengths phi;
+  FuzzyNetwork::Outputs output;
+  EXPECT_EQ(allocations_of([&] {
+              network.strengths(input, phi);
+              output = network.output(phi);
+            }),
+            0);
+  EXPECT_TRUE(output.allFinite());
 }
 
 TEST(CorrectedTracker, StepsAllocateNothing) {

@@ -4,29 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <new>
-
+#include "tests/support/allocation_count.hpp"
 #include "truebearing/filter/kalman.hpp"
 #include "truebearing/measurement/position.hpp"
 #include "truebearing/measurement/range_to_site.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
-
-namespace {
-long allocations = 0;
-}
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
 
 namespace truebearing {
 namespace {
@@ -37,7 +19,7 @@ void expect_no_allocation() {
   const Position<2> position{{5.0, 5.0}};
   const RangeToSite<> range{{100.0, 100.0}, 5.0};
   KalmanFilter<4, Form> filter(Eigen::Vector4d::Zero(), Eigen::Matrix4d::Identity());
-  const long before = allocations;
+  const long before = testing::allocations;
   Eigen::internal::set_is_malloc_allowed(false);
   bool ok = true;
   for (int k = 0; k < 10; ++k) {
@@ -46,7 +28,7 @@ void expect_no_allocation() {
     ok &= filter.update(range, Eigen::Matrix<double, 1, 1>(140.0)).status == StepStatus::ok;
   }
   Eigen::internal::set_is_malloc_allowed(true);
-  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(testing::allocations, before);
   EXPECT_TRUE(ok);
 }
 

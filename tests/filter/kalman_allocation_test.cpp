@@ -6,19 +6,23 @@
 
 #include "tests/support/allocation_count.hpp"
 #include "truebearing/filter/kalman.hpp"
+#include "truebearing/filter/unscented.hpp"
+#include "truebearing/measurement/longer_state.hpp"
 #include "truebearing/measurement/position.hpp"
+#include "truebearing/measurement/range_bearing.hpp"
 #include "truebearing/measurement/range_to_site.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
+#include "truebearing/motion/turning_target.hpp"
 
 namespace truebearing {
 namespace {
 
-template <typename Form>
+template <typename Filter>
 void expect_no_allocation() {
   const ConstantVelocity<2, ContinuousWhiteNoise> motion{{0.5}};
   const Position<2> position{{5.0, 5.0}};
   const RangeToSite<> range{{100.0, 100.0}, 5.0};
-  KalmanFilter<4, Form> filter(Eigen::Vector4d::Zero(), Eigen::Matrix4d::Identity());
+  Filter filter(Eigen::Vector4d::Zero(), Eigen::Matrix4d::Identity());
   const long before = testing::allocations;
   Eigen::internal::set_is_malloc_allowed(false);
   bool ok = true;
@@ -32,10 +36,33 @@ void expect_no_allocation() {
   EXPECT_TRUE(ok);
 }
 
+template <typename Filter>
+void expect_no_allocation_in_a_turn() {
+  const TurningTarget<ContinuousWhiteNoise> motion{{0.5}, 0.01};
+  const auto model = on_state<5>(RangeBearing<>{{-1000.0, -2000.0}, 5.0, 0.01});
+  Filter filter(Filter::State::Zero(), Filter::Covariance::Identity());
+  const long before = testing::allocations;
+  Eigen::internal::set_is_malloc_allowed(false);
+  bool ok = true;
+  for (int k = 0; k < 10; ++k) {
+    ok &= filter.predict(motion, 1.0) == StepStatus::ok;
+    ok &= filter.update(model, {2236.0, 0.46}).status == StepStatus::ok;
+  }
+  Eigen::internal::set_is_malloc_allowed(true);
+  EXPECT_EQ(testing::allocations, before);
+  EXPECT_TRUE(ok);
+}
+
 TEST(KalmanFilterAllocation, StepsAllocateNothing) {
-  expect_no_allocation<Joseph>();
-  expect_no_allocation<Conventional>();
-  expect_no_allocation<SquareRoot>();
+  expect_no_allocation<KalmanFilter<4, Joseph>>();
+  expect_no_allocation<KalmanFilter<4, Conventional>>();
+  expect_no_allocation<KalmanFilter<4, SquareRoot>>();
+  expect_no_allocation_in_a_turn<KalmanFilter<5>>();
+}
+
+TEST(UnscentedKalmanFilterAllocation, StepsAllocateNothing) {
+  expect_no_allocation<UnscentedKalmanFilter<4>>();
+  expect_no_allocation_in_a_turn<UnscentedKalmanFilter<5>>();
 }
 
 }  // namespace

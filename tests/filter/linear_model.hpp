@@ -1,7 +1,10 @@
-// A linear measurement model and a linear motion model of any given matrices, for tests.
+// A linear measurement model and a linear motion model of any given matrices, for tests; and a linear motion model that
+// says it is not linear.
 #pragma once
 
 #include <Eigen/Core>
+
+#include "truebearing/motion/motion_model.hpp"
 
 namespace truebearing {
 
@@ -32,6 +35,20 @@ struct LinearMotion {
 
   Eigen::Matrix<double, N, N> F(double) const { return transition; }
   Eigen::Matrix<double, N, N> Q(double) const { return noise; }
+};
+
+template <LinearMotionModel Motion>
+struct AsNonlinear {
+  using Scalar = typename Motion::Scalar;
+  static constexpr int kStates = Motion::kStates;
+  using State = Eigen::Matrix<Scalar, kStates, 1>;
+  using Matrix = Eigen::Matrix<Scalar, kStates, kStates>;
+
+  Motion motion;
+
+  State f(const State& x, Scalar dt_s) const { return motion.F(dt_s) * x; }
+  Matrix F(const State&, Scalar dt_s) const { return motion.F(dt_s); }
+  Matrix Q(Scalar dt_s) const { return motion.Q(dt_s); }
 };
 
 }  // namespace truebearing

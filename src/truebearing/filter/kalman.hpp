@@ -1,7 +1,8 @@
-// The Kalman filter (Kalman 1960), and through h and H of a nonlinear measurement model the extended one: state x (n),
-// covariance P (n x n). A small value: no heap, no virtual call; Form says how P is carried and updated.
-//     predict  x = F x,  P = F P F' + Q          update  nu = residual(z, h(x)),  x = x + K nu,  P as Form says
-// Bar-Shalom, Li and Kirubarajan 2001, section 5.2.3.
+// The Kalman filter (Kalman 1960), and with a nonlinear motion or measurement model the first-order extended one: state
+// x (n), covariance P (n x n). A small value: no heap, no virtual call; Form says how P is carried and updated.
+//     predict  x = F x or f(x),  P = F P F' + Q  update  nu = residual(z, h(x)),  x = x + K nu,  P as Form says
+// Bar-Shalom, Li and Kirubarajan 2001, sections 5.2.3 and 10.3; the Jacobians F and H are taken at the estimate before
+// the step.
 #pragma once
 
 #include <Eigen/Core>
@@ -39,6 +40,16 @@ class KalmanFilter {
     const State x = product(F, x_);
     Covariance carried = carried_;
     const bool valid = Form::template predict<N, Scalar>(F, motion.Q(dt_s), carried);
+    return commit(valid, x, carried);
+  }
+
+  /// The same across a nonlinear motion: P by the Jacobian at the estimate before.
+  template <NonlinearMotionModel Motion>
+  EIGEN_ALWAYS_INLINE StepStatus predict(const Motion& motion, Scalar dt_s) {
+    static_assert(Motion::kStates == N && std::is_same_v<typename Motion::Scalar, Scalar>);
+    const State x = motion.f(x_, dt_s);
+    Covariance carried = carried_;
+    const bool valid = Form::template predict<N, Scalar>(motion.F(x_, dt_s), motion.Q(dt_s), carried);
     return commit(valid, x, carried);
   }
 

@@ -7,4 +7,6 @@ find_package(TBB REQUIRED)
 find_package(CLI11 2.1 REQUIRED)
 find_package(NLopt REQUIRED)
 find_package(Boost 1.74 REQUIRED)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(GEOGRAPHICLIB REQUIRED IMPORTED_TARGET geographiclib)  # Debian has no CMake package of it
 find_path(TRUEBEARING_RANDOM123 Random123/philox.h REQUIRED)  # headers only, without a CMake package

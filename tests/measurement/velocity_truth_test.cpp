@@ -44,5 +44,17 @@ TEST(VelocityTruth, OneTimeGivesNoVelocity) {
   EXPECT_TRUE(velocity_truth({}, {}).empty());
 }
 
+TEST(VelocityTruth, CompletesOnlyTheVelocitiesThatAreNotGiven) {
+  const std::vector<double> time_s{0.0, 1.0, 2.0};
+  std::vector<BoundedVector> x;
+  for (const double t : time_s) x.emplace_back(Eigen::Vector4d(3.0 * t, -2.0 * t, 50.0, 50.0));
+  complete_velocities(plane_space(), {true, true, false, true}, time_s, x);
+  EXPECT_NEAR(x[1](2), 3.0, 1e-12);
+  EXPECT_EQ(x[1](3), 50.0);
+  std::vector<BoundedVector> line{Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(4.0, 0.0), Eigen::Vector2d(8.0, 0.0)};
+  complete_velocities(line_space(), {true, false}, time_s, line);
+  EXPECT_NEAR(line[0](1), 4.0, 1e-12);
+}
+
 }  // namespace
 }  // namespace truebearing

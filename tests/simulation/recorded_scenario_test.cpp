@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "tests/support/error_message.hpp"
 #include "tests/support/statistics.hpp"
+#include "truebearing/core/angle.hpp"
 #include "truebearing/measurement/recording_csv.hpp"
 
 namespace truebearing {
@@ -63,6 +65,73 @@ TEST(RecordedScenario, NeedsATruthThatHoldsWhatIsMeasured) {
   EXPECT_THAT(
       error_message([] { RecordedScenario(read("time_s,range_m,truth_east_m,truth_north_m\n0,1,2,3\n"), 1.0); }),
       HasSubstr("range_m"));
+}
+
+// Two tracks that stand still, at (300, 400) and at (0, -1000); the second has no truth at its second step.
+std::vector<Recording> positions() {
+  std::vector<Recording> tracks;
+  for (const Eigen::Vector2d& place : {Eigen::Vector2d(300, 400), Eigen::Vector2d(0, -1000)}) {
+    Recording track;
+    track.measured = {"east_m", "north_m"};
+    track.truth_space = &plane_space();
+    track.truth.resize(1);
+    for (int k = 0; k < 3; ++k) {
+      Measurement measurement;
+      measurement.time_s = k;
+      measurement.z = place;
+      track.measurements.push_back(measurement);
+      track.truth[0].x.emplace_back(Eigen::Vector4d(place.x(), place.y(), 0, 0));
+    }
+    tracks.push_back(track);
+  }
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  tracks[1].truth[0].x[1].setConstant(unknown);
+  tracks[1].measurements[2].z.setConstant(unknown);
+  return tracks;
+}
+
+TEST(RecordedScenario, RunsTakeTurnsAtTheTracks) {
+  const RecordedScenario scenario(positions(), RecordedSensor{.sigma_m = 10.0});
+  EXPECT_EQ(&scenario.truth_space(), &plane_space());
+  std::vector<double> east, north;
+  for (std::uint64_t run = 0; run < 4000; ++run) {
+    const Recording recording = scenario.simulate({1, Role::evaluation, run});
+    const Eigen::Vector2d place = run % 2 == 0 ? Eigen::Vector2d(300, 400) : Eigen::Vector2d(0, -1000);
+    ASSERT_EQ(recording.truth[0].x[0].head<2>(), place);
+    EXPECT_EQ(recording.measurements[0].sigma.size(), 0);
+    east.push_back(recording.measurements[0].z(0) - place.x());
+    north.push_back(recording.measurements[1].z(1) - place.y());
+  }
+  EXPECT_TRUE(variance_fits(testing::moments(east).variance, 100.0, east.size()));
+  EXPECT_TRUE(variance_fits(testing::moments(north).variance, 100.0, north.size())) << "measured without truth too";
+  const Recording second = scenario.simulate({1, Role::evaluation, 1});
+  EXPECT_TRUE(second.measurements[2].is_missing());
+  EXPECT_EQ(second.counts.missing, 1);
+}
+
+TEST(RecordedScenario, RangeAndBearingAreTakenFromTheSite) {
+  RecordedSensor sensor{.output = RecordedSensor::Output::range_bearing, .sigma_m = 5.0, .bearing_sigma_rad = 0.1};
+  sensor.site_m << 300, 1400;
+  sensor.reported = true;
+  const RecordedScenario scenario(positions(), sensor);
+  std::vector<double> range, bearing;
+  for (std::uint64_t run = 0; run < 8000; run += 2) {
+    const Recording recording = scenario.simulate({1, Role::evaluation, run});
+    EXPECT_THAT(recording.measured, ::testing::ElementsAre("range_m", "bearing_deg"));
+    ASSERT_EQ(recording.truth[0].x[0].head<2>(), Eigen::Vector2d(0, -1000)) << "the site is the origin";
+    EXPECT_EQ(recording.measurements[0].sigma(1), 0.1);
+    EXPECT_LE(std::abs(recording.measurements[0].z(1)), kPi);
+    range.push_back(recording.measurements[0].z(0) - 1000.0);
+    bearing.push_back(wrap_pi(recording.measurements[0].z(1) - kPi));  // due South
+  }
+  EXPECT_NEAR(testing::moments(bearing).mean, 0.0, testing::mean_margin(0.1, bearing.size()));
+  EXPECT_TRUE(variance_fits(testing::moments(range).variance, 25.0, range.size()));
+  EXPECT_TRUE(variance_fits(testing::moments(bearing).variance, 0.01, bearing.size()));
+}
+
+TEST(RecordedScenario, PositionsMustBeThoseOfThePlane) {
+  EXPECT_THAT(error_message([] { RecordedScenario({}, RecordedSensor{}); }), HasSubstr("no track"));
+  EXPECT_THAT(error_message([] { RecordedScenario({read(kLog)}, RecordedSensor{}); }), HasSubstr("east_m and north_m"));
 }
 
 }  // namespace

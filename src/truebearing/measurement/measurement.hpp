@@ -9,6 +9,8 @@
 
 namespace truebearing {
 
+struct StepRecord;
+
 struct SensorState {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< East, North
   Eigen::Vector2d velocity_mps = Eigen::Vector2d::Zero();
@@ -19,6 +21,8 @@ struct Measurement {
   BoundedVector z;      ///< in the units of the measured columns, angles in radians; NaN where a value is missing
   BoundedVector sigma;  ///< standard deviations of z, or empty where the tracker's own apply
   std::optional<SensorState> sensor;
+  /// What a tracker that ran elsewhere made of this measurement, where a step log tells; owned by the Recording.
+  const StepRecord* recorded = nullptr;
 
   /// True where no value of z can be used.
   bool is_missing() const { return z.size() == 0 || !z.allFinite(); }

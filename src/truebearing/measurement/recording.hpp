@@ -2,6 +2,7 @@
 // recordings and measurement logs are read into them, so that trackers cannot tell the two apart.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,8 @@
 #include "truebearing/measurement/measurement.hpp"
 
 namespace truebearing {
+
+struct StepLog;
 
 /// The true states of one target at the times of the measurements; NaN components where the truth is unknown.
 struct Truth {
@@ -27,7 +30,10 @@ struct Recording {
   struct Counts {
     int missing = 0;   ///< rows without a usable measurement
     int repeated = 0;  ///< rows identical to the one before, dropped
+    int glitches = 0;  ///< of the missing, those whose position implied an impossible speed
   } counts;
+
+  std::shared_ptr<const StepLog> steps;  ///< owns what `recorded` of the measurements points to; mostly empty
 };
 
 }  // namespace truebearing

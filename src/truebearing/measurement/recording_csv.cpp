@@ -55,14 +55,6 @@ std::string sigma_column(const std::string& measured) {
   return measured.substr(0, split) + "_sigma" + measured.substr(split);
 }
 
-/// The position whose derivative a velocity is, and nothing for other components.
-std::string position_of(std::string_view velocity) {
-  constexpr std::string_view kVelocityUnit = "_mps";
-  if (!velocity.ends_with(kVelocityUnit)) return {};
-  const std::string_view stem = velocity.substr(0, velocity.size() - kVelocityUnit.size());
-  return std::string(stem == "velocity" ? "position" : stem) + "_m";
-}
-
 /// A column of the log and what its numbers are multiplied by.
 struct Column {
   std::size_t index;
@@ -196,18 +188,12 @@ BoundedVector read_truth(const Layout& layout, const std::vector<double>& row) {
   return x;
 }
 
-void complete_velocities(const Layout& layout, Recording& recording) {
+void complete_truth(const Layout& layout, Recording& recording) {
   std::vector<double> time_s;
   for (const Measurement& measurement : recording.measurements) time_s.push_back(measurement.time_s);
-  for (int i = 0; i < layout.truth_space->size(); ++i) {
-    const int partner =
-        layout.truth_space->component_index(position_of(layout.truth_space->components[static_cast<std::size_t>(i)]));
-    if (layout.truth[static_cast<std::size_t>(i)] || partner < 0) continue;
-    std::vector<double> position_m;
-    for (const BoundedVector& x : recording.truth[0].x) position_m.push_back(x(partner));
-    const std::vector<double> velocity_mps = velocity_truth(time_s, position_m);
-    for (std::size_t k = 0; k < velocity_mps.size(); ++k) recording.truth[0].x[k](i) = velocity_mps[k];
-  }
+  std::vector<bool> given;
+  for (const auto& column : layout.truth) given.push_back(column.has_value());
+  complete_velocities(*layout.truth_space, given, time_s, recording.truth[0].x);
 }
 
 Recording read_rows(CsvReader csv) {
@@ -236,7 +222,7 @@ Recording read_rows(CsvReader csv) {
     previous = std::move(row);
   }
   if (recording.measurements.empty()) throw InputError(csv.name(), "has no rows", "at least one measurement");
-  if (layout.truth_space) complete_velocities(layout, recording);
+  if (layout.truth_space) complete_truth(layout, recording);
   return recording;
 }
 

@@ -1,27 +1,52 @@
-// A recorded track as a scenario: the truth is the recording's own, and every run measures it afresh with Gaussian
-// noise of the recording's sigma. What the recording did not measure stays missing.
+// Recorded tracks as a scenario: the truth is the recording's own, and every run measures it afresh with Gaussian
+// noise. What the recording did not measure stays missing. Of several tracks, run k measures number k mod count.
 #pragma once
 
+#include <Eigen/Core>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "truebearing/simulation/scenario.hpp"
 
 namespace truebearing {
 
+/// The sensor that recorded positions in the plane are measured with. It stands at the origin: `site_m` of the
+/// recording's frame becomes the origin of the scenario's.
+struct RecordedSensor {
+  enum class Output { position, range_bearing };
+
+  Output output = Output::position;
+  double sigma_m = 1.0;            ///< of the position per axis, or of the range
+  double bearing_sigma_rad = 0.0;  ///< of range_bearing
+  Eigen::Vector2d site_m = Eigen::Vector2d::Zero();
+  bool reported = false;  ///< does a measurement carry its standard deviations?
+
+  /// Names of the components of z.
+  std::vector<std::string> measured() const;
+};
+
 class RecordedScenario final : public Scenario {
  public:
-  /// `sigma`, in the unit of the measured columns, stands in where the recording carries none. Throws InputError where
-  /// the recording has no truth, a measured column is no component of it, or a sigma is missing.
+  /// A log, measured with its own sigma. `sigma`, in the unit of the measured columns, stands in where the recording
+  /// carries none. Throws InputError where the recording has no truth, a measured column is no component of it, or a
+  /// sigma is missing.
   explicit RecordedScenario(Recording recorded, std::optional<double> sigma = std::nullopt);
 
+  /// Recorded positions (measured east_m, north_m, truth in plane_space()), taken as exact and measured by the sensor,
+  /// also at steps that have no truth to be scored against. Throws InputError for other recordings or none.
+  RecordedScenario(std::vector<Recording> positions, const RecordedSensor& sensor);
+
   Recording simulate(const RunKey& key) const override;
-  const StateSpace& truth_space() const override { return *recorded_.truth_space; }
+  const StateSpace& truth_space() const override { return *tracks_.front().exact.truth_space; }
 
  private:
-  Recording recorded_;
-  std::vector<Eigen::Index> components_;  // of the truth, by component of z
-  std::optional<double> sigma_;
+  struct Track {
+    Recording exact;                   // z without noise
+    std::vector<BoundedVector> sigma;  // of each measurement
+  };
+  std::vector<Track> tracks_;
+  Eigen::Index bearing_ = -1;  // the component of z that is an angle
 };
 
 }  // namespace truebearing

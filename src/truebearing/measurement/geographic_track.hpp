@@ -1,0 +1,48 @@
+// Recorded positions on the globe as recordings in the plane: CSV with `time_s`, `latitude_deg` and `longitude_deg`
+// (WGS-84), and optionally `vessel`, `flight` or `track`, a number that separates targets whose rows are interleaved.
+// Other columns are passed over: what a transponder says of its own course and speed is no truth.
+//
+// Each target becomes a recording of east_m and north_m in a local East-North frame whose origin lies in the middle of
+// its area. The truth is the recorded position itself and its velocity_truth(), which does not reach across a gap.
+#pragma once
+
+#include <filesystem>
+#include <istream>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "truebearing/measurement/recording.hpp"
+
+namespace truebearing {
+
+/// What of a recorded track is believed, and what is scored.
+struct GeographicTrackOptions {
+  /// A position that implies a higher speed from the last one kept is a glitch: measurement and truth are missing.
+  double max_speed_mps = std::numeric_limits<double>::infinity();
+  /// Slower than this, the truth is NaN: measured, but not scored.
+  double min_speed_mps = 0.0;
+  /// The first step after a gap of more than that many median periods has no truth either.
+  double max_gap_periods = std::numeric_limits<double>::infinity();
+};
+
+/// Fewer usable rows than this are no track.
+inline constexpr int kFewestRows = 20;
+
+struct GeographicTracks {
+  std::vector<Recording> recordings;  ///< one per target, in the order of their first rows
+  int left_out = 0;                   ///< targets with fewer than kFewestRows usable rows
+};
+
+/// Is this a regular file of CSV whose header names latitude_deg? Throws InputError where it cannot be read.
+bool is_geographic_track(const std::filesystem::path& path);
+
+/// Empty cells make a row missing; a row with the time and place of the target's last is dropped; both are counted.
+/// Throws InputError that names the row: a time that is missing or decreases within a target, a latitude outside
+/// [-90, 90], a longitude outside [-180, 360]; and where no target has kFewestRows usable rows.
+GeographicTracks read_geographic_tracks(const std::filesystem::path& path, const GeographicTrackOptions& options = {});
+/// The same for a stream; `name` stands for the file in messages.
+GeographicTracks read_geographic_tracks(std::istream& stream, const std::string& name,
+                                        const GeographicTrackOptions& options = {});
+
+}  // namespace truebearing

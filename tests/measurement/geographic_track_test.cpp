@@ -1,0 +1,235 @@
+#include "truebearing/measurement/geographic_track.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fmt/format.h>
+#include <map>
+#include <sstream>
+
+#include "tests/support/error_message.hpp"
+#include "tests/support/real_data.hpp"
+
+namespace truebearing {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using testing::error_message;
+using ::testing::HasSubstr;
+
+// On this circle of latitude a degree of latitude is 111.1 km and one of longitude 78.8 km long (WGS-84).
+constexpr double kLatitude_deg = 45.0;
+constexpr double kStep_deg = 0.001;
+constexpr double kStep_m = 111.132;
+
+GeographicTracks read(const std::string& text, const GeographicTrackOptions& options = {}) {
+  std::istringstream stream(text);
+  return read_geographic_tracks(stream, "track.csv", options);
+}
+
+std::string error_of(const std::string& text) {
+  return error_message([&] { read(text); });
+}
+
+std::string row(double time_s, double steps_north) {
+  return fmt::format("{},{},7.5\n", time_s, kLatitude_deg + kStep_deg * (steps_north - 15.0));
+}
+
+// Thirty-one rows, one step to the North each second; the rows in `instead` take the place of the sample of that time.
+std::string northbound(const std::map<int, std::string>& instead = {}) {
+  std::string text = "time_s,latitude_deg,longitude_deg\n";
+  for (int k = 0; k <= 30; ++k) text += instead.contains(k) ? instead.at(k) : row(k, k);
+  return text;
+}
+
+bool is_scored(const Recording& recording, std::size_t k) {
+  return recording.truth[0].x[k].allFinite();
+}
+
+TEST(GeographicTrack, PositionsAreMetresFromTheMiddleOfTheArea) {
+  const GeographicTracks tracks = read(northbound());
+  ASSERT_EQ(tracks.recordings.size(), 1u);
+  const Recording& recording = tracks.recordings[0];
+  EXPECT_THAT(recording.measured, ElementsAre("east_m", "north_m"));
+  EXPECT_EQ(recording.truth_space, &plane_space());
+  ASSERT_EQ(recording.measurements.size(), 31u);
+  EXPECT_NEAR(recording.measurements[15].z.norm(), 0.0, 1e-6);
+  EXPECT_NEAR(recording.measurements[30].z(1), 15.0 * kStep_m, 0.1);
+  EXPECT_NEAR(recording.measurements[0].z(1), -15.0 * kStep_m, 0.1);
+  EXPECT_NEAR(recording.measurements[30].z(0), 0.0, 1e-6);
+  EXPECT_EQ(recording.measurements[30].sigma.size(), 0);
+  for (std::size_t k = 0; k < 31; ++k) {
+    EXPECT_EQ(recording.truth[0].x[k].head<2>(), recording.measurements[k].z);
+    EXPECT_NEAR(recording.truth[0].x[k](2), 0.0, 1e-6);
+    EXPECT_NEAR(recording.truth[0].x[k](3), kStep_m, 0.01);
+  }
+}
+
+TEST(GeographicTrack, TheDateLineIsNoEdge) {
+  std::string text = "time_s,latitude_deg,longitude_deg\n";
+  for (int k = 0; k <= 30; ++k)
+    text += fmt::format("{},45,{}\n", k, k <= 15 ? 179.985 + k * 0.001 : -180.015 + k * 0.001);
+  const Recording recording = read(text).recordings.at(0);
+  for (std::size_t k = 0; k < 31; ++k) EXPECT_NEAR(recording.truth[0].x[k](2), 78.85, 0.01) << k;
+  EXPECT_NEAR(recording.measurements[30].z(0), 15.0 * 78.85, 0.2);
+}
+
+TEST(GeographicTrack, OtherColumnsArePassedOver) {
+  std::string text = "call_sign,longitude_deg,time_s,track_deg,latitude_deg\n";
+  for (int k = 0; k < 20; ++k) text += fmt::format("AB{0},7.5,{0},270,{1}\n", k, kLatitude_deg + k * kStep_deg);
+  EXPECT_NEAR(read(text).recordings.at(0).truth[0].x[10](3), kStep_m, 0.01) << "not the track angle of the file";
+}
+
+TEST(GeographicTrack, GlitchIsMissingAndCounted) {
+  const std::string text = northbound({{10, row(10, 14)}, {11, row(11, 15)}});
+  const Recording recording = read(text, {.max_speed_mps = 150.0}).recordings.at(0);
+  EXPECT_EQ(recording.counts.glitches, 2);
+  EXPECT_EQ(recording.counts.missing, 2);
+  for (const std::size_t k : {10u, 11u}) {
+    EXPECT_TRUE(recording.measurements[k].is_missing());
+    EXPECT_TRUE(recording.truth[0].x[k].array().isNaN().all());
+  }
+  for (const std::size_t k : {8u, 9u, 12u, 13u}) EXPECT_NEAR(recording.truth[0].x[k](3), kStep_m, 0.01) << k;
+  EXPECT_EQ(read(text).recordings.at(0).counts.glitches, 0) << "everything is believed unless a limit is given";
+}
+
+TEST(GeographicTrack, FirstPositionThatIsWrongDoesNotLockOutTheRest) {
+  const Recording recording = read(northbound({{0, row(0, -5)}}), {.max_speed_mps = 180.0}).recordings.at(0);
+  EXPECT_EQ(recording.counts.glitches, 8) << "until the wrong one could have got there: 5 + k steps in k seconds";
+  EXPECT_FALSE(recording.measurements[9].is_missing());
+  EXPECT_FALSE(recording.measurements[30].is_missing());
+}
+
+TEST(GeographicTrack, StepAfterAGapIsNotScoredAndVelocityDoesNotReachAcross) {
+  std::string text = "time_s,latitude_deg,longitude_deg\n";
+  for (int k = 0; k <= 30; ++k) text += row(k <= 14 ? k : k + 9, k);  // ten seconds for the step from 14 to 15
+  const Recording recording = read(text, {.max_gap_periods = 3.0}).recordings.at(0);
+  EXPECT_TRUE(is_scored(recording, 14));
+  EXPECT_FALSE(is_scored(recording, 15));
+  EXPECT_FALSE(recording.measurements[15].is_missing()) << "measured all the same";
+  for (const std::size_t k : {13u, 14u, 16u, 17u}) EXPECT_NEAR(recording.truth[0].x[k](3), kStep_m, 0.01) << k;
+  const Recording all = read(text).recordings.at(0);
+  EXPECT_TRUE(is_scored(all, 15));
+  EXPECT_LT(all.truth[0].x[15](3), 0.5 * kStep_m);
+}
+
+TEST(GeographicTrack, GapOfMissingRowsIsAGapToo) {
+  std::map<int, std::string> instead;
+  for (int k = 10; k < 14; ++k) instead[k] = fmt::format("{},,\n", k);
+  const Recording recording = read(northbound(instead), {.max_gap_periods = 3.0}).recordings.at(0);
+  EXPECT_FALSE(is_scored(recording, 14));
+  EXPECT_TRUE(is_scored(recording, 15));
+}
+
+TEST(GeographicTrack, SlowStepsAreNotScored) {
+  std::map<int, std::string> instead;
+  for (int k = 20; k <= 30; ++k) instead[k] = row(k, 19);
+  const Recording recording = read(northbound(instead), {.min_speed_mps = 20.0}).recordings.at(0);
+  EXPECT_TRUE(is_scored(recording, 18));
+  EXPECT_FALSE(is_scored(recording, 25));
+  EXPECT_FALSE(recording.measurements[25].is_missing());
+  EXPECT_EQ(recording.counts.missing, 0);
+}
+
+TEST(GeographicTrack, EmptyCellsAreMissingAndCounted) {
+  const Recording recording =
+      read(northbound({{3, "3,,7.5\n"}, {4, "4,45,nan\n"}, {5, "5,inf,7.5\n"}})).recordings.at(0);
+  EXPECT_EQ(recording.counts.missing, 3);
+  EXPECT_EQ(recording.counts.glitches, 0);
+  EXPECT_TRUE(recording.measurements[4].z.array().isNaN().all());
+  EXPECT_FALSE(is_scored(recording, 4));
+}
+
+TEST(GeographicTrack, RepeatedRowsAreDroppedAndCounted) {
+  const Recording recording = read(northbound({{3, row(3, 3) + row(3, 3)}, {4, "4,,\n4,,\n"}})).recordings.at(0);
+  EXPECT_EQ(recording.measurements.size(), 31u);
+  EXPECT_EQ(recording.counts.repeated, 2);
+}
+
+std::string two_vessels(const char* column) {
+  std::string text = fmt::format("time_s,{},latitude_deg,longitude_deg\n", column);
+  for (int k = 0; k < 25; ++k) {
+    text += fmt::format("{},21,{},7.5\n", k + 0.5, kLatitude_deg + k * kStep_deg);
+    if (k < 22) text += fmt::format("{},5,{},8.5\n", k + 0.25 * (k % 3), kLatitude_deg - k * kStep_deg);
+  }
+  return text + "100,7,45,7.5\n";
+}
+
+TEST(GeographicTrack, InterleavedTargetsAreTrackedApart) {
+  for (const char* column : {"vessel", "flight", "track"}) {
+    const GeographicTracks tracks = read(two_vessels(column));
+    ASSERT_EQ(tracks.recordings.size(), 2u) << column;
+    EXPECT_EQ(tracks.recordings[0].measurements.size(), 25u);
+    EXPECT_EQ(tracks.recordings[1].measurements.size(), 22u);
+    EXPECT_NEAR(tracks.recordings[0].truth[0].x[10](3), kStep_m, 0.01);
+    EXPECT_LT(tracks.recordings[1].truth[0].x[10](3), -0.9 * kStep_m);
+    EXPECT_LT(tracks.recordings[1].measurements[0].z.norm(), 2000.0) << "a middle of its own";
+    EXPECT_EQ(tracks.left_out, 1) << "one row is no track";
+  }
+}
+
+TEST(GeographicTrack, TargetsAreNumbersInOneColumn) {
+  EXPECT_THAT(error_of("time_s,latitude_deg,longitude_deg,vessel,track\n"), HasSubstr("vessel and track"));
+  for (const char* cell : {"", "1.5", "nan"})
+    EXPECT_THAT(error_of(fmt::format("time_s,latitude_deg,longitude_deg,vessel\n0,45,7,{}\n", cell)),
+                AllOf(HasSubstr("track.csv:2: vessel"), HasSubstr("integer")));
+}
+
+TEST(GeographicTrack, TooFewRowsAreNoTrack) {
+  std::string text = "time_s,latitude_deg,longitude_deg\n";
+  for (int k = 0; k < 19; ++k) text += row(k, k);
+  EXPECT_THAT(error_of(text), AllOf(HasSubstr("track.csv"), HasSubstr("20 usable rows")));
+  EXPECT_EQ(error_of(text + row(19, 19)), "no error");
+  EXPECT_THAT(error_of("time_s,latitude_deg,longitude_deg\n"), HasSubstr("20 usable rows"));
+}
+
+TEST(GeographicTrack, RowsThatCannotBeAreErrors) {
+  EXPECT_THAT(error_of(northbound({{5, row(3.5, 5)}})),
+              AllOf(HasSubstr("track.csv:7: time_s"), HasSubstr("3.5"), HasSubstr("4")));
+  EXPECT_THAT(error_of(northbound({{5, ",45,7.5\n"}})), HasSubstr("track.csv:7: time_s"));
+  for (const char* latitude : {"90.1", "-91"})
+    EXPECT_THAT(error_of(northbound({{5, fmt::format("5,{},7.5\n", latitude)}})),
+                AllOf(HasSubstr("track.csv:7: latitude_deg"), HasSubstr(latitude), HasSubstr("[-90, 90]")));
+  for (const char* longitude : {"360.5", "-181"})
+    EXPECT_THAT(error_of(northbound({{5, fmt::format("5,45,{}\n", longitude)}})),
+                AllOf(HasSubstr("track.csv:7: longitude_deg"), HasSubstr(longitude)));
+  EXPECT_THAT(error_of(northbound({{5, "5,north,7.5\n"}})), AllOf(HasSubstr("track.csv:7"), HasSubstr("north")));
+  EXPECT_THAT(error_of("time_s,latitude_deg\n0,45\n"), HasSubstr("longitude_deg"));
+}
+
+TEST(GeographicTrack, RecordedFlightIsCleanedOfItsGlitches) {
+  const std::filesystem::path path = testing::real_data("flight_belevingsvlucht.csv");
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is absent";
+  EXPECT_TRUE(is_geographic_track(path));
+  const Recording flight =
+      read_geographic_tracks(path, {.max_speed_mps = 400.0, .min_speed_mps = 20.0, .max_gap_periods = 3.0})
+          .recordings.at(0);
+  EXPECT_GT(flight.counts.glitches, 0);
+  EXPECT_LT(flight.counts.glitches, 320) << "two per cent";
+  const Measurement* last = nullptr;
+  for (std::size_t k = 0; k < flight.measurements.size(); ++k) {
+    const Measurement& measurement = flight.measurements[k];
+    const BoundedVector& x = flight.truth[0].x[k];
+    EXPECT_TRUE(!x.allFinite() || x.tail<2>().norm() >= 20.0);
+    if (measurement.is_missing()) continue;
+    if (last) {
+      EXPECT_LE((measurement.z - last->z).norm(), 400.0 * (measurement.time_s - last->time_s));
+    }
+    last = &measurement;
+  }
+}
+
+TEST(GeographicTrack, RecordedVesselsAreToldApart) {
+  const std::filesystem::path path = testing::real_data("ais_solent.csv");
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is absent";
+  const GeographicTracks tracks = read_geographic_tracks(path, {.max_speed_mps = 30.0});
+  EXPECT_GT(tracks.recordings.size(), 10u);
+  for (const Recording& vessel : tracks.recordings)
+    for (const Measurement& measurement : vessel.measurements)
+      EXPECT_TRUE(measurement.is_missing() || measurement.z.norm() < 100e3);
+}
+
+}  // namespace
+}  // namespace truebearing

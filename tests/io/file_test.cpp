@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tests/support/error_message.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace truebearing {
 namespace {
@@ -18,6 +19,7 @@ namespace {
 using ::testing::AllOf;
 using testing::error_message;
 using ::testing::HasSubstr;
+using testing::TemporaryFolder;
 namespace fs = std::filesystem;
 
 constexpr std::size_t kAny = std::size_t{1} << 30;
@@ -128,6 +130,33 @@ TEST_F(FileTest, NameLeftOverFromAKilledWriterIsPassedOver) {
   write_file_atomically(folder_ / "a", "text");
   EXPECT_EQ(read_text_file(folder_ / "a", kAny), "text");
   EXPECT_TRUE(fs::is_symlink(leftover(1999)));
+}
+
+TEST(MatchingFiles, StarIsAnyTextInTheFilesName) {
+  const TemporaryFolder folder;
+  for (const char* name : {"run_10.csv", "run_02.csv", "run_1.txt", "other.csv", ".run_3.csv"}) folder.write(name, "");
+  const auto names = [&](const std::string& pattern) {
+    std::vector<std::string> found;
+    for (const auto& path : matching_files(folder.path() / pattern)) {
+      EXPECT_EQ(path.parent_path(), folder.path());
+      found.push_back(path.filename().string());
+    }
+    return found;
+  };
+  EXPECT_EQ(names("run_*.csv"), (std::vector<std::string>{"run_02.csv", "run_10.csv"}));
+  EXPECT_EQ(names("*_1*"), (std::vector<std::string>{"run_1.txt", "run_10.csv"}));
+  EXPECT_EQ(names("*"), (std::vector<std::string>{"other.csv", "run_02.csv", "run_1.txt", "run_10.csv"}));
+  EXPECT_EQ(names("r*n*0*2.csv"), (std::vector<std::string>{"run_02.csv"}));
+  EXPECT_EQ(names("nowhere.csv"), (std::vector<std::string>{"nowhere.csv"})) << "who opens it will say";
+}
+
+TEST(MatchingFiles, NoMatchIsAnError) {
+  const TemporaryFolder folder;
+  folder.write("run.csv", "");
+  for (const char* pattern : {"run*x", "run.csv*run.csv", "nowhere/*.csv"})
+    EXPECT_THAT(error_message([&] { matching_files(folder.path() / pattern); }), HasSubstr("matches no file"))
+        << pattern;
+  EXPECT_THAT(error_message([&] { matching_files(folder.path() / "*/run.csv"); }), HasSubstr("name of a folder"));
 }
 
 }  // namespace

@@ -75,5 +75,22 @@ TEST(RecordedTracker, ResetAndCloneBeginAnew) {
   EXPECT_EQ(recorded.step(position(1.0, 0.0))[0].x[0], 10.0);
 }
 
+TEST(RecordedTracker, WithoutALogItReplaysWhatMeasurementsCarry) {
+  RecordedTracker recorded(line_space(), true);
+  EXPECT_TRUE(recorded.replays_measurements());
+  EXPECT_TRUE(recorded.blocks().innovation);
+  EXPECT_EQ(&recorded.space(), &line_space());
+  StepRecord record;
+  record.space = &line_space();
+  record.x = Eigen::Vector2d(3.0, 4.0);
+  Measurement measurement = position(1.0, 0.0);
+  EXPECT_TRUE(recorded.step(measurement).empty());
+  measurement.recorded = &record;
+  ASSERT_EQ(recorded.step(measurement).size(), 1u);
+  EXPECT_EQ(recorded.clone()->step(measurement)[0].x[1], 4.0);
+  record.space = &plane_space();
+  EXPECT_TRUE(recorded.step(measurement).empty()) << "of another space";
+}
+
 }  // namespace
 }  // namespace truebearing

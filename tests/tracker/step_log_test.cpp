@@ -11,8 +11,8 @@
 namespace truebearing {
 namespace {
 
-using testing::error_message;
 using ::testing::AllOf;
+using testing::error_message;
 using ::testing::HasSubstr;
 using testing::kNaN;
 using testing::position;
@@ -126,7 +126,8 @@ TEST(StepLog, MissingColumnsAreListed) {
 TEST(StepLog, TextWhereANumberBelongsIsRefused) {
   EXPECT_THAT(error_of(kHeader + "1,0,ten,2,4,1,9\n"), AllOf(HasSubstr("steps.csv:2"), HasSubstr("x_position_m")));
   for (const char* track : {"0.5", "-1", "nan", "1e30"})
-    EXPECT_THAT(error_of(kHeader + "1," + track + ",10,2,4,1,9\n"), AllOf(HasSubstr("steps.csv:2"), HasSubstr("track")));
+    EXPECT_THAT(error_of(kHeader + "1," + track + ",10,2,4,1,9\n"),
+                AllOf(HasSubstr("steps.csv:2"), HasSubstr("track")));
   EXPECT_THAT(error_of("time_s,track,status,x_range_m,P_1_1\n1,0,fine,10,4\n"), HasSubstr("coasted"));
 }
 
@@ -151,6 +152,21 @@ TEST(StepLog, TooManyComponentsAreRefused) {
       row += ",1";
     }
   EXPECT_THAT(error_of(header + "\n" + row + "\n"), HasSubstr("at most 8"));
+}
+
+TEST(StepLog, MeasurementAndTruthAreReadWhereTheyAre) {
+  const StepLog log =
+      parse("time_s,track,x_position_m,P_1_1,z_1,truth_position_m,truth_velocity_mps\n1,0,5,2,7,6,\n2,0,5,2,,6,1\n");
+  EXPECT_FALSE(log.has_innovation);
+  ASSERT_EQ(log.z.size(), 2u);
+  EXPECT_EQ(log.z[0][0], 7.0);
+  EXPECT_TRUE(std::isnan(log.z[1][0]));
+  EXPECT_EQ(log.truth_components, (std::vector<std::string>{"position_m", "velocity_mps"}));
+  EXPECT_EQ(log.truth[1][1], 1.0);
+  EXPECT_TRUE(std::isnan(log.truth[0][1]));
+  const StepLog bare = parse("time_s,track,x_position_m,P_1_1\n1,0,5,2\n");
+  EXPECT_EQ(bare.z[0].size(), 0);
+  EXPECT_TRUE(bare.truth_components.empty());
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
@@ -93,7 +94,42 @@ std::filesystem::path replaceable_target(const std::filesystem::path& path) {
   return error ? path : target;
 }
 
+/// Does the name fit the pattern, in which * is any text?
+bool fits(std::string_view name, std::string_view pattern) {
+  const std::size_t star = pattern.find('*');
+  if (star == std::string_view::npos) return name == pattern;
+  if (name.substr(0, star) != pattern.substr(0, star)) return false;
+  name.remove_prefix(star);
+  pattern.remove_prefix(star + 1);
+  // All parts but the last may be found as early as they are there.
+  for (std::size_t next = pattern.find('*'); next != std::string_view::npos; next = pattern.find('*')) {
+    const std::size_t found = name.find(pattern.substr(0, next));
+    if (found == std::string_view::npos) return false;
+    name.remove_prefix(found + next);
+    pattern.remove_prefix(next + 1);
+  }
+  return name.ends_with(pattern);
+}
+
 }  // namespace
+
+std::vector<std::filesystem::path> matching_files(const std::filesystem::path& pattern) {
+  const std::string name = pattern.filename().string();
+  if (pattern.parent_path().string().find('*') != std::string::npos)
+    throw InputError(pattern.string(), "has a * in the name of a folder", "a * in the name of the file only");
+  if (name.find('*') == std::string::npos) return {pattern};
+  const std::filesystem::path folder = pattern.has_parent_path() ? pattern.parent_path() : ".";
+  std::vector<std::filesystem::path> files;
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string file = entry->path().filename().string();
+    const bool hidden = file.starts_with('.') && !name.starts_with('.');
+    if (!hidden && fits(file, name)) files.push_back(pattern.parent_path() / file);
+  }
+  if (files.empty()) throw InputError(pattern.string(), "matches no file");
+  std::sort(files.begin(), files.end());
+  return files;
+}
 
 std::string read_text_file(const std::filesystem::path& path, std::size_t max_bytes) {
   const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));

@@ -5,11 +5,16 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace truebearing {
 
 /// The text of a file of at most max_bytes. Throws InputError where it is missing, unreadable or larger.
 std::string read_text_file(const std::filesystem::path& path, std::size_t max_bytes);
+
+/// The files that a pattern stands for, sorted by name: in the file's name, * is any text. A pattern without it is the
+/// file itself, there or not. Throws InputError where nothing matches, or where a folder's name holds a *.
+std::vector<std::filesystem::path> matching_files(const std::filesystem::path& pattern);
 
 /// Writes to a temporary name of its own beside `path`, flushes it to disk and renames it: after a crash, a full disk
 /// or a second writer, the file is the old one or one writer's whole text. Throws InputError; leaves nothing behind on

@@ -20,20 +20,22 @@ constexpr std::array kKinds{ScenarioKind{"line", read_line_scenario},
 
 }  // namespace
 
-std::unique_ptr<Scenario> read_scenario(TableReader table) {
+std::unique_ptr<Scenario> read_scenario(TableReader table, const ScenarioKinds& more) {
   std::vector<std::string> names;
   for (const ScenarioKind& kind : kKinds) names.emplace_back(kind.name);
+  for (const auto& [name, read] : more) names.push_back(name);
   const std::string name = table.choice("kind", names);
   std::unique_ptr<Scenario> scenario;
   for (const ScenarioKind& kind : kKinds)
     if (kind.name == name) scenario = kind.read(table);
+  if (const auto found = more.find(name); found != more.end()) scenario = found->second(table);
   table.finish();
   return scenario;
 }
 
-std::unique_ptr<Scenario> load_scenario(const std::filesystem::path& path) {
+std::unique_ptr<Scenario> load_scenario(const std::filesystem::path& path, const ScenarioKinds& more) {
   const toml::table table = read_toml_file(path);
-  return read_scenario(TableReader(table, path.string()));
+  return read_scenario(TableReader(table, path.string()), more);
 }
 
 }  // namespace truebearing

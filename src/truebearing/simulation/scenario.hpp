@@ -3,7 +3,10 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <memory>
+#include <string>
 
 #include "truebearing/core/random.hpp"
 #include "truebearing/core/state_space.hpp"
@@ -19,6 +22,8 @@ class Scenario {
   virtual Recording simulate(const RunKey& key) const = 0;
   /// The space of the truth of every run.
   virtual const StateSpace& truth_space() const = 0;
+  /// What whoever reads its results should know of it, as a line; mostly nothing.
+  virtual std::string note() const { return {}; }
 
  protected:
   Scenario() = default;
@@ -27,7 +32,10 @@ class Scenario {
 };
 
 /// Reads a scenario table; its key `kind` names which: "line" or "planar_flight". Throws InputError.
-std::unique_ptr<Scenario> read_scenario(TableReader table);
-std::unique_ptr<Scenario> load_scenario(const std::filesystem::path& path);
+/// `more` holds the kinds that a room further on adds, by name.
+using ScenarioReader = std::function<std::unique_ptr<Scenario>(TableReader&)>;
+using ScenarioKinds = std::map<std::string, ScenarioReader>;
+std::unique_ptr<Scenario> read_scenario(TableReader table, const ScenarioKinds& more = {});
+std::unique_ptr<Scenario> load_scenario(const std::filesystem::path& path, const ScenarioKinds& more = {});
 
 }  // namespace truebearing

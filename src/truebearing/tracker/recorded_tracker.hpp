@@ -1,5 +1,5 @@
 // A tracker that ran elsewhere, replayed from its step log, so that it can be corrected and compared without being
-// touched.
+// touched. It replays one log, matched by time; or, on the measurements of step logs, what each of them carries.
 #pragma once
 
 #include <memory>
@@ -13,15 +13,23 @@ namespace truebearing {
 class RecordedTracker final : public Tracker {
  public:
   explicit RecordedTracker(StepLog log);
+  /// Replays Measurement::recorded, for states of this space; `innovation`: do the records carry one?
+  RecordedTracker(const StateSpace& space, bool innovation) : space_(&space), innovation_(innovation) {}
 
-  /// The log's records of the measurement's time, to a microsecond; none where it has none of that time.
+  /// Does it replay what measurements carry?
+  bool replays_measurements() const { return !log_; }
+
+  /// The log's records of the measurement's time, to a microsecond; none where it has none of that time. Or the
+  /// measurement's own record; none where it carries none of this space.
   std::span<const StepRecord> step(const Measurement& measurement) override;
   void reset() override { next_ = 0; }
   std::unique_ptr<Tracker> clone() const override;
-  const StateSpace& space() const override { return *log_->space; }
-  RecordBlocks blocks() const override { return {.innovation = log_->has_innovation}; }
+  const StateSpace& space() const override { return *space_; }
+  RecordBlocks blocks() const override { return {.innovation = innovation_}; }
 
  private:
+  const StateSpace* space_;
+  bool innovation_;
   std::shared_ptr<const StepLog> log_;
   std::size_t next_ = 0;
 };

@@ -23,6 +23,18 @@ std::vector<int> vector_columns(const CsvReader& csv, const std::string& name) {
   }
 }
 
+// Columns <prefix><component>, and the names of the components.
+std::vector<int> component_columns(const CsvReader& csv, const std::string& prefix,
+                                   std::vector<std::string>& components) {
+  std::vector<int> columns;
+  for (std::size_t column = 0; column < csv.header().size(); ++column)
+    if (csv.header()[column].starts_with(prefix)) {
+      components.push_back(csv.header()[column].substr(prefix.size()));
+      columns.push_back(static_cast<int>(column));
+    }
+  return columns;
+}
+
 // The upper triangle name_1_1, name_1_2, ..., row by row; empty where it is not all there.
 std::vector<int> triangle_columns(const CsvReader& csv, const std::string& name, std::size_t size) {
   std::vector<int> columns;
@@ -67,15 +79,11 @@ StepLog read_rows(CsvReader& csv, const std::string& tracker) {
   if (!tracker.empty() && tracker_column < 0)
     throw InputError(csv.name(), "has no column `tracker` to find \"" + tracker + "\" in");
   std::vector<std::string> components;
-  std::vector<int> x_columns;
-  for (std::size_t column = 0; column < csv.header().size(); ++column)
-    if (csv.header()[column].starts_with("x_")) {
-      components.push_back(csv.header()[column].substr(2));
-      x_columns.push_back(static_cast<int>(column));
-    }
+  const std::vector<int> x_columns = component_columns(csv, "x_", components);
   if (components.empty()) throw InputError(csv.name(), "has no column x_<component>", "x_position_m and the like");
   StepLog log;
   log.space = &state_space_of_components(components);
+  const std::vector<int> truth_columns = component_columns(csv, "truth_", log.truth_components);
   const std::size_t n = components.size();
   const std::vector<int> P_columns = triangle_columns(csv, "P", n);
   if (P_columns.empty())
@@ -87,6 +95,10 @@ StepLog read_rows(CsvReader& csv, const std::string& tracker) {
   log.has_innovation = !nu_columns.empty() && z_columns.size() == nu_columns.size() && !S_columns.empty();
   if (z_columns.size() > kMaxDimension)
     throw InputError(csv.name(), fmt::format("has {} columns z", z_columns.size()),
+                     fmt::format("at most {}", kMaxDimension));
+
+  if (truth_columns.size() > kMaxDimension)
+    throw InputError(csv.name(), fmt::format("has {} columns truth_", truth_columns.size()),
                      fmt::format("at most {}", kMaxDimension));
 
   double last_time_s = -std::numeric_limits<double>::infinity();
@@ -117,6 +129,8 @@ StepLog read_rows(CsvReader& csv, const std::string& tracker) {
       if (std::isfinite(innovation.nis)) record.innovation = innovation;
     }
     log.records.push_back(record);
+    log.z.push_back(read_vector(csv, z_columns));
+    log.truth.push_back(read_vector(csv, truth_columns));
   }
   if (log.records.empty())
     throw InputError(csv.name(), tracker.empty() ? "has no rows" : "has no rows of the tracker \"" + tracker + "\"");

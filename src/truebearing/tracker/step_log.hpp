@@ -17,6 +17,11 @@ struct StepLog {
   const StateSpace* space = nullptr;
   std::vector<StepRecord> records;  ///< in the order of the file, times not decreasing
   bool has_innovation = false;
+  /// By record, NaN where a cell is empty: the measurement (no components where the log has no columns z), and the
+  /// truth of these components (none where it has no columns truth_).
+  std::vector<BoundedVector> z;
+  std::vector<std::string> truth_components;
+  std::vector<BoundedVector> truth;
 };
 
 /// The records of `tracker`, or of the whole file where that is empty. An innovation block is read where z, nu and S

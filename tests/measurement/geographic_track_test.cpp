@@ -207,7 +207,7 @@ TEST(GeographicTrack, RecordedFlightIsCleanedOfItsGlitches) {
       read_geographic_tracks(path, {.max_speed_mps = 400.0, .min_speed_mps = 20.0, .max_gap_periods = 3.0})
           .recordings.at(0);
   EXPECT_GT(flight.counts.glitches, 0);
-  EXPECT_LT(flight.counts.glitches, 320) << "two per cent";
+  EXPECT_LT(flight.counts.glitches, 320) << "two per cent of the rows";
   const Measurement* last = nullptr;
   for (std::size_t k = 0; k < flight.measurements.size(); ++k) {
     const Measurement& measurement = flight.measurements[k];

@@ -169,5 +169,23 @@ TEST(StepLog, MeasurementAndTruthAreReadWhereTheyAre) {
   EXPECT_TRUE(bare.truth_components.empty());
 }
 
+TEST(StepLog, RowsCanBePutInTheOrderOfTheirTimes) {
+  StepLogWriter writer(line_space(), 0);
+  StepRecord record;
+  record.x = Eigen::Vector2d::Zero();
+  record.P = Eigen::Matrix2d::Identity();
+  for (const auto& [track, time_s] : {std::pair{1, 1.0}, {1, 2.0}, {2, 1.0}, {2, 2.0}}) {
+    record.track = track;
+    record.time_s = time_s;
+    writer.add("any", record);
+  }
+  EXPECT_THAT(error_of(writer.str()), HasSubstr("do not decrease"));
+  writer.sort_by_time();
+  const StepLog log = parse(writer.str());
+  ASSERT_EQ(log.records.size(), 4u);
+  EXPECT_EQ(log.records[1].track, 2) << "rows of one time stay as they were added";
+  EXPECT_EQ(log.records[2].track, 1);
+}
+
 }  // namespace
 }  // namespace truebearing

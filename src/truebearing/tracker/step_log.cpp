@@ -1,5 +1,6 @@
 #include "truebearing/tracker/step_log.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
@@ -164,6 +165,11 @@ StepLogWriter::StepLogWriter(const StateSpace& space, int measurements)
 
 void StepLogWriter::add(const std::string& tracker, const StepRecord& record) {
   rows_.push_back({tracker, record});
+}
+
+void StepLogWriter::sort_by_time() {
+  std::stable_sort(rows_.begin(), rows_.end(),
+                   [](const Row& a, const Row& b) { return a.record.time_s < b.record.time_s; });
 }
 
 std::string StepLogWriter::str() const {

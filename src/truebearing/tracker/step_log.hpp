@@ -37,6 +37,8 @@ class StepLogWriter {
   StepLogWriter(const StateSpace& space, int measurements);
 
   void add(const std::string& tracker, const StepRecord& record);
+  /// Puts the rows in the order of their times, which a log must have; rows of one time stay as they were added.
+  void sort_by_time();
   std::string str() const;
 
  private:

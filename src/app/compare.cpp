@@ -7,8 +7,6 @@
 #include "app/workflow.hpp"
 #include "truebearing/correction/corrected_tracker.hpp"
 #include "truebearing/evaluation/report.hpp"
-#include "truebearing/measurement/recording_csv.hpp"
-#include "truebearing/simulation/recorded_scenario.hpp"
 
 namespace truebearing {
 namespace {
@@ -41,9 +39,12 @@ void run_compare(const Options& options, bool seed_given) {
     models = train_study(study, {}, workflow);
   }
   std::unique_ptr<Scenario> recorded;
-  if (!options.truth.empty()) recorded = std::make_unique<RecordedScenario>(read_recording(options.truth));
+  if (!options.truth.empty()) recorded = study.recorded_scenario(options.truth);
   const std::vector<NamedScenario> scenarios =
       recorded ? std::vector<NamedScenario>{{options.truth, recorded.get()}} : study.evaluation_scenarios();
+  std::string notes;
+  for (const NamedScenario& named : scenarios)
+    if (const std::string note = named.scenario->note(); !note.empty()) notes += note + "\n";
 
   ComparisonOptions comparison_options = study.comparison_options();
   comparison_options.seed = seed;
@@ -62,7 +63,7 @@ void run_compare(const Options& options, bool seed_given) {
     comparison.ns_per_step.emplace_back(trackers.name(i),
                                         time_per_step_ns(*standalone(study, trackers.name(i), models), timed));
 
-  if (options.json != "-") fmt::print("{}", comparison_table(comparison));
+  if (options.json != "-") fmt::print("{}{}", notes, comparison_table(comparison));
   if (!options.json.empty()) write_output(options.json, comparison_json(comparison));
 }
 
@@ -77,7 +78,8 @@ void add_compare(CLI::App& app) {
   command->add_option("--runs", options->runs, "runs; the study's own number where not given")
       ->check(CLI::Range(1, 10000000));
   command->add_option("--threads", options->threads, "0: one per core")->check(CLI::Range(0, 1024));
-  command->add_option("--truth", options->truth, "a recorded track with truth, measured afresh in every run");
+  command->add_option("--truth", options->truth,
+                      "a recorded track (log with truth, or positions), measured afresh in every run");
   command->add_flag("--retrain", options->retrain, "tune and train afresh with this seed; files are left alone");
   command->add_option("--json", options->json, "write the results as JSON; - is standard output");
   command->add_flag("--quiet", options->quiet, "no progress");

@@ -4,14 +4,18 @@
 #include <fmt/format.h>
 #include <map>
 #include <memory>
+#include <vector>
 
 #include "app/output.hpp"
 #include "app/subcommands.hpp"
 #include "truebearing/evaluation/innovation_consistency.hpp"
 #include "truebearing/evaluation/report.hpp"
+#include "truebearing/measurement/geographic_track.hpp"
 #include "truebearing/measurement/recording_csv.hpp"
 #include "truebearing/study/study.hpp"
+#include "truebearing/study/recorded_file.hpp"
 #include "truebearing/tracker/step_log.hpp"
+#include "truebearing/tracker/step_log_scenario.hpp"
 
 namespace truebearing {
 namespace {
@@ -23,12 +27,16 @@ struct Options {
   std::string json;
 };
 
-void check_columns(const Study& study, const Recording& recording, const std::string& log) {
-  const std::vector<std::string> wanted = study.scenario().simulate({study.seed(), Role::evaluation, 0}).measured;
-  const auto joined = [](const std::vector<std::string>& names) { return fmt::format("{}", fmt::join(names, ", ")); };
-  if (recording.measured != wanted)
-    throw InputError(log, "measures " + joined(recording.measured),
-                     joined(wanted) + ", which the study's trackers take");
+// The tracks of a log: one, or as many as a step log has.
+std::vector<RecordedTrack> read_log(const Study& study, const std::string& log) {
+  if (const auto* logs = dynamic_cast<const StepLogScenario*>(&study.scenario())) return logs->read(log);
+  if (is_geographic_track(log))
+    throw InputError(
+        log, "holds recorded positions, which are no measurements",
+        fmt::format("`truebearing compare {} --truth {}`, which measures them", study.path().string(), log));
+  Recording recording = read_recording(log);
+  check_measured(recording.measured, study.scenario(), log);
+  return {{0, std::move(recording)}};
 }
 
 // Writes the records of all trackers whose state is the first corrected or plain one's.
@@ -46,6 +54,9 @@ class TrackWriter {
     if (!writer_) writer_.emplace(*space_, record.innovation ? static_cast<int>(record.innovation->nu.size()) : 1);
     writer_->add(name, record);
   }
+  void sort_by_time() {
+    if (writer_) writer_->sort_by_time();
+  }
   std::string str() const { return writer_ ? writer_->str() : StepLogWriter(*space_, 1).str(); }
 
  private:
@@ -53,12 +64,13 @@ class TrackWriter {
   std::optional<StepLogWriter> writer_;
 };
 
-void print_consistency(const TrackerSet& trackers, const std::vector<InnovationConsistency>& consistency) {
+void print_consistency(const TrackerSet& trackers, const std::vector<InnovationConsistency>& consistency,
+                       const std::vector<TrackerCounts>& all_counts) {
   fmt::print("{:<14}{:>8}{:>24}{:>22}{:>9}{:>9}{:>9}{:>8}\n", "tracker", "steps", "NIS/expected (95 %)",
              "correlation (95 %)", "missing", "repeated", "gated", "failed");
   for (int i = 0; i < trackers.size(); ++i) {
     const InnovationConsistency& c = consistency[static_cast<std::size_t>(i)];
-    const TrackerCounts counts = trackers.counts(i);
+    const TrackerCounts& counts = all_counts[static_cast<std::size_t>(i)];
     const std::string nis =
         c.steps() == 0 ? "-"
                        : fmt::format("{:.2f} ({:.2f}-{:.2f})", c.nis_ratio(), c.nis_ratio_low(), c.nis_ratio_high());
@@ -75,45 +87,65 @@ void print_consistency(const TrackerSet& trackers, const std::vector<InnovationC
           trackers.name(i));
 }
 
-// The log's own measurements as the one run of a comparison.
+// The log's own measurements as the runs of a comparison, one per track.
 class LogScenario final : public Scenario {
  public:
-  explicit LogScenario(const Recording& recording) : recording_(recording) {}
-  Recording simulate(const RunKey&) const override { return recording_; }
-  const StateSpace& truth_space() const override { return *recording_.truth_space; }
+  explicit LogScenario(const std::vector<RecordedTrack>& tracks) : tracks_(tracks) {}
+  Recording simulate(const RunKey& key) const override { return tracks_[static_cast<std::size_t>(key.run)].recording; }
+  const StateSpace& truth_space() const override { return *tracks_.front().recording.truth_space; }
 
  private:
-  const Recording& recording_;
+  const std::vector<RecordedTrack>& tracks_;
 };
+
+void add(TrackerCounts& sum, const TrackerCounts& counts) {
+  sum.missing += counts.missing;
+  sum.repeated += counts.repeated;
+  sum.out_of_order += counts.out_of_order;
+  sum.gated += counts.gated;
+  sum.failed += counts.failed;
+}
 
 void track(const Options& options) {
   const Study study = Study::load(options.study);
-  const Recording recording = read_recording(options.log);
-  check_columns(study, recording, options.log);
+  const std::vector<RecordedTrack> tracks = read_log(study, options.log);
   TrackerSet trackers = study.make_tracker_set();
 
   TrackWriter writer(trackers);
-  std::vector<InnovationConsistency> consistency(static_cast<std::size_t>(trackers.size()));
-  for (const Measurement& measurement : recording.measurements) {
-    trackers.step(measurement);
-    for (int i = 0; i < trackers.size(); ++i)
-      for (const StepRecord& record : trackers.records(i)) {
-        if (!record.correction)
-          consistency[static_cast<std::size_t>(i)].add(record);  // a correction has no innovations
-        writer.add(trackers.name(i), record);
-      }
+  const auto entries = static_cast<std::size_t>(trackers.size());
+  std::vector<InnovationConsistency> consistency(entries);
+  std::vector<TrackerCounts> counts(entries);
+  Recording::Counts rows;
+  std::size_t measurements = 0;
+  for (const auto& [number, recording] : tracks) {
+    trackers.reset();
+    for (const Measurement& measurement : recording.measurements) {
+      trackers.step(measurement);
+      for (int i = 0; i < trackers.size(); ++i)
+        for (StepRecord record : trackers.records(i)) {
+          if (!record.correction)
+            consistency[static_cast<std::size_t>(i)].add(record);  // a correction has no innovations
+          record.track += number;                                  // those of a step log are numbered 0 while they run
+          writer.add(trackers.name(i), record);
+        }
+    }
+    for (int i = 0; i < trackers.size(); ++i) add(counts[static_cast<std::size_t>(i)], trackers.counts(i));
+    measurements += recording.measurements.size();
+    rows.missing += recording.counts.missing;
+    rows.repeated += recording.counts.repeated;
   }
+  if (tracks.size() > 1) writer.sort_by_time();
   const bool to_stdout = options.output == "-" || options.json == "-";
   if (!to_stdout) {
-    fmt::print("{}: {} measurements, {} missing, {} repeated rows dropped\n\n", options.log,
-               recording.measurements.size(), recording.counts.missing, recording.counts.repeated);
-    print_consistency(trackers, consistency);
+    fmt::print("{}: {} measurements, {} missing, {} repeated rows dropped\n\n", options.log, measurements, rows.missing,
+               rows.repeated);
+    print_consistency(trackers, consistency, counts);
   }
-  if (recording.truth_space) {
+  if (tracks.front().recording.truth_space) {
     ComparisonOptions comparison_options = study.comparison_options();
-    comparison_options.runs = 1;
+    comparison_options.runs = tracks.size();
     comparison_options.threads = 1;
-    const LogScenario scenario(recording);
+    const LogScenario scenario(tracks);
     Comparison comparison = compare(trackers, {{options.log, &scenario}}, comparison_options);
     comparison.study = study.name() + " on " + options.log;
     if (!to_stdout) fmt::print("\n{}", comparison_table(comparison));
@@ -130,7 +162,10 @@ void add_track(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("track", "run the study's trackers on a recorded log");
   command->add_option("study", options->study, "study file (TOML)")->required();
-  command->add_option("log", options->log, "measurement log (CSV); - is standard input")->required();
+  command
+      ->add_option("log", options->log,
+                   "measurement log (CSV), or step log where the study's scenario is of those; - is standard input")
+      ->required();
   command->add_option("-o,--output", options->output, "write the trackers' step records as CSV; - is standard output");
   command->add_option("--json", options->json,
                       "write the scores as JSON, where the log has truth; - is standard output");

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -11,6 +12,8 @@ namespace truebearing {
 namespace {
 
 using nlohmann::json;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
 using testing::is_one_line;
 using testing::kStudy;
 using testing::Outcome;
@@ -18,14 +21,12 @@ using testing::replaced;
 using testing::run;
 using testing::TemporaryFolder;
 using testing::write_study;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
 
 TEST(Program, WrongUsageIsStatus2) {
   const TemporaryFolder folder;
   for (const char* wrong : {"", "fly", "check", "compare", "compare small.toml --rnus 3", "compare small.toml --runs 0",
-                            "compare small.toml --runs many", "compare small.toml --threads -1", "simulate scenario.toml",
-                            "track small.toml", "rules a b", "--nonsense"}) {
+                            "compare small.toml --runs many", "compare small.toml --threads -1",
+                            "simulate scenario.toml", "track small.toml", "rules a b", "--nonsense"}) {
     const Outcome outcome = run(folder, wrong);
     EXPECT_EQ(outcome.status, 2) << wrong;
     EXPECT_FALSE(outcome.err.empty()) << wrong;
@@ -171,7 +172,8 @@ TEST(Program, MissingCellsAreCoastedAndCounted) {
   EXPECT_EQ(with.status, 0) << with.err;
   EXPECT_THAT(with.out, HasSubstr("6 measurements, 3 missing, 1 repeated rows dropped"));
   EXPECT_EQ(run(folder, "track small.toml without.csv -o without_steps.csv").status, 0);
-  const StepLog a = read_step_log(folder.path() / "with_steps.csv"), b = read_step_log(folder.path() / "without_steps.csv");
+  const StepLog a = read_step_log(folder.path() / "with_steps.csv"),
+                b = read_step_log(folder.path() / "without_steps.csv");
   ASSERT_EQ(a.records.size(), 6u);
   ASSERT_EQ(b.records.size(), 3u);
   for (const auto& [i, j] : {std::pair<std::size_t, std::size_t>{0, 0}, {4, 1}, {5, 2}}) {
@@ -214,13 +216,99 @@ TEST(Program, FailedCommandLeavesItsOutputsAsTheyWere) {
 TEST(Program, OutputThatCannotBeWrittenIsStatus1) {
   const TemporaryFolder folder;
   write_study(folder, plain_study());
-  for (const char* arguments : {"compare small.toml --runs 2 --json nowhere/report.json", "simulate scenario.toml -o small.toml",
-                                "compare small.toml --runs 2 --json - > /dev/full", "check small.toml > /dev/full"}) {
+  for (const char* arguments :
+       {"compare small.toml --runs 2 --json nowhere/report.json", "simulate scenario.toml -o small.toml",
+        "compare small.toml --runs 2 --json - > /dev/full", "check small.toml > /dev/full"}) {
     const Outcome outcome = run(folder, arguments);
     EXPECT_EQ(outcome.status, 1) << arguments;
     EXPECT_TRUE(is_one_line(outcome.err)) << arguments << "\n" << outcome.err;
     EXPECT_THAT(outcome.err, ::testing::Not(HasSubstr("internal error"))) << arguments;
   }
+}
+
+const std::string kPlaneStudy = R"(name = "flight"
+runs = 4
+
+[recorded]
+position_sigma_m = 50.0
+max_speed_mps = 400.0
+
+[scenario]
+kind = "planar_flight"
+output = "plane"
+period_s = 1.0
+steps = 5
+flight = { speed_mps = 100.0, leg_s = 20.0, turn_s = 20.0, turn_rate_degps = 3.0, roll_in_s = 3.0 }
+site = { closest_m = 0.0 }
+sensor = { position_sigma_m = 50.0 }
+
+[trackers.filter]
+kind = "kalman"
+space = "plane"
+motion = { model = "constant_velocity", noise = "discrete", sigma_a_mps2 = 3.0 }
+measurement = { model = "position", sigma_m = 50.0 }
+start = { kind = "two_point" }
+)";
+
+TEST(Program, ComparesOnRecordedPositions) {
+  const TemporaryFolder folder;
+  folder.write("flight.toml", kPlaneStudy);
+  folder.write("bare.toml", replaced(kPlaneStudy, "[recorded]\nposition_sigma_m = 50.0\nmax_speed_mps = 400.0\n", ""));
+  std::ostringstream track;
+  track << "time_s,latitude_deg,longitude_deg\n";
+  for (int k = 0; k < 30; ++k) track << k << ',' << (k == 20 ? 46.0 : 45.0 + 0.001 * k) << ",7.5\n";
+  folder.write("track.csv", track.str());
+  const Outcome compared = run(folder, "compare flight.toml --truth track.csv --json report.json");
+  EXPECT_EQ(compared.status, 0) << compared.err;
+  EXPECT_THAT(compared.out, HasSubstr("track.csv: tracks: 1; 30 measurements, 1 missing, 1 of them glitches"));
+  const double rmse_m = json::parse(folder.read("report.json"))["trackers"]["filter"]["rmse"]["position_m"];
+  EXPECT_GT(rmse_m, 10.0);
+  EXPECT_LT(rmse_m, 50.0 * std::sqrt(2.0)) << "better than the measurements";
+
+  for (const auto& [arguments, says] : std::vector<std::pair<std::string, std::string>>{
+           {"compare bare.toml --truth track.csv", "[recorded] with position_sigma_m in bare.toml"},
+           {"track flight.toml track.csv", "truebearing compare flight.toml --truth track.csv"},
+           {"compare flight.toml --truth nowhere.csv", "nowhere.csv"}}) {
+    const Outcome outcome = run(folder, arguments);
+    EXPECT_EQ(outcome.status, 1) << arguments;
+    EXPECT_THAT(outcome.err, HasSubstr(says)) << arguments;
+    EXPECT_TRUE(is_one_line(outcome.err)) << arguments << "\n" << outcome.err;
+  }
+}
+
+TEST(Program, TracksEveryTrackOfAStepLog) {
+  const TemporaryFolder folder;
+  folder.write("study.toml", R"(name = "logs"
+[scenario]
+kind = "step_logs"
+space = "line"
+training = ["*.none"]
+evaluation = ["*.none"]
+[trackers.foreign]
+kind = "recorded"
+components = ["position_m", "velocity_mps"]
+innovation = false
+)");
+  const std::string header = "time_s,track,x_position_m,x_velocity_mps,P_1_1,P_1_2,P_2_2";
+  const std::string rows[] = {"1,3,10,2,4,1,9", "1,8,-5,0,4,0,9", "2,3,12,2,4,1,9"};
+  folder.write("log.csv", header + "\n" + rows[0] + "\n" + rows[1] + "\n" + rows[2] + "\n");
+  folder.write("truth.csv", header + ",truth_position_m\n" + rows[0] + ",11\n" + rows[1] + ",-5\n" + rows[2] + ",13\n");
+  const Outcome tracked = run(folder, "track study.toml log.csv -o steps.csv");
+  EXPECT_EQ(tracked.status, 0) << tracked.err;
+  EXPECT_THAT(tracked.out, HasSubstr("3 measurements, 3 missing"));
+  const StepLog steps = read_step_log(folder.path() / "steps.csv", "foreign");
+  ASSERT_EQ(steps.records.size(), 3u);
+  EXPECT_EQ(steps.records[0].track, 3);
+  EXPECT_EQ(steps.records[1].track, 8);
+  EXPECT_EQ(steps.records[2].x[0], 12.0);
+  const Outcome scored = run(folder, "track study.toml truth.csv --json -");
+  EXPECT_EQ(scored.status, 0) << scored.err;
+  const json report = json::parse(scored.out);
+  EXPECT_EQ(report["runs"], 2) << "one per track";
+  EXPECT_NEAR(report["trackers"]["foreign"]["rmse"]["position_m"].get<double>(), std::sqrt(2.0 / 3.0), 1e-9);
+  const Outcome none = run(folder, "compare study.toml");
+  EXPECT_EQ(none.status, 1);
+  EXPECT_THAT(none.err, HasSubstr("matches no file"));
 }
 
 }  // namespace

@@ -191,6 +191,12 @@ std::unique_ptr<Tracker> make_raw_tracker(TableReader& table) {
 }
 
 std::unique_ptr<Tracker> make_recorded_tracker(TableReader& table) {
+  if (!table.has("file")) {
+    const std::vector<std::string> components = table.texts("components");
+    if (!table.has("innovation")) throw table.error("innovation", "is missing", "true or false, or a key `file`");
+    return std::make_unique<RecordedTracker>(state_space_of_components(components),
+                                             table.boolean_or("innovation", false));
+  }
   const std::string file = table.text("file");
   return std::make_unique<RecordedTracker>(read_step_log(table.resolve(file), table.text_or("tracker", "")));
 }

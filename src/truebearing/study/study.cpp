@@ -9,9 +9,14 @@
 #include "truebearing/correction/model_file.hpp"
 #include "truebearing/study/configuration_text.hpp"
 #include "truebearing/study/tracker_registry.hpp"
+#include "truebearing/tracker/recorded_tracker.hpp"
+#include "truebearing/tracker/step_log_scenario.hpp"
 
 namespace truebearing {
 namespace {
+
+// Kinds of scenario that need more of the house than a simulator.
+const ScenarioKinds kMoreScenarios{{"step_logs", read_step_log_scenario}};
 
 // Keys of a tracker's table that belong to the study, not to the maker of the tracker.
 constexpr const char* kStudyKeys[] = {"kind", "like", "tune", "show"};
@@ -74,12 +79,18 @@ void Study::read(const toml::table& table, const std::vector<std::string>& order
   name_ = reader.text("name");
   const toml::node* scenario = reader.node("scenario");
   if (scenario && scenario->is_table())
-    scenario_ = read_scenario(reader.table("scenario"));
+    scenario_ = read_scenario(reader.table("scenario"), kMoreScenarios);
   else
-    scenario_ = load_scenario(reader.resolve(reader.text("scenario")));
+    scenario_ = load_scenario(reader.resolve(reader.text("scenario")), kMoreScenarios);
+  if (auto recorded = reader.table_if_present("recorded")) recorded_ = read_recorded_spec(std::move(*recorded));
   if (auto sets = reader.table_if_present("sets"))
     for (const std::string& set : sets->keys()) {
-      sets_.emplace_back(set, load_scenario(sets->resolve(sets->text(set))));
+      const std::filesystem::path file = sets->resolve(sets->text(set));
+      if (file.extension() == ".csv") {
+        sets_.emplace_back(set, recorded_scenario(file));
+        continue;
+      }
+      sets_.emplace_back(set, load_scenario(file, kMoreScenarios));
       if (sets_.back().second->truth_space() != scenario_->truth_space())
         throw sets->error(set, "has another truth than the study's scenario");
     }
@@ -128,8 +139,16 @@ void Study::read_scoring(TableReader scoring) {
 std::vector<NamedScenario> Study::evaluation_scenarios() const {
   if (sets_.empty()) return {{name_, scenario_.get()}};
   std::vector<NamedScenario> scenarios;
-  for (const auto& [name, scenario] : sets_) scenarios.push_back({name, scenario.get()});
+  for (const auto& [name, scenario] : sets_) {
+    if (scenario->truth_space() != scenario_->truth_space())  // of a recorded track, known only now
+      throw InputError(path_.string() + ": sets." + name, "has another truth than the study's scenario");
+    scenarios.push_back({name, scenario.get()});
+  }
   return scenarios;
+}
+
+std::unique_ptr<Scenario> Study::recorded_scenario(const std::filesystem::path& file) const {
+  return std::make_unique<RecordedFile>(file, recorded_, *scenario_, path_);
 }
 
 void Study::read_trackers(TableReader table, const std::vector<std::string>& order) {
@@ -161,7 +180,7 @@ void Study::check_trackers() {
     if (!spec.correction) {
       TableReader reader(spec.configuration, path_.string(), "trackers." + spec.name);
       for (const char* key : kStudyKeys) reader.node(key);  // valid too, for whoever misspelt one
-      truebearing::make_tracker(spec.kind, reader);
+      check_replay(spec, *truebearing::make_tracker(spec.kind, reader));
       continue;
     }
     for (const std::string& member : spec.correction->members())
@@ -181,6 +200,19 @@ void Study::check_trackers() {
       throw InputError(path_.string() + ": trackers." + spec.name + ": " + error.where(), error.found(), error.valid());
     }
   }
+}
+
+// A tracker that replays what measurements carry needs the logs of one.
+void Study::check_replay(const TrackerSpec& spec, const Tracker& tracker) {
+  const auto* recorded = dynamic_cast<const RecordedTracker*>(&tracker);
+  if (!recorded || !recorded->replays_measurements()) return;
+  const std::string where = path_.string() + ": trackers." + spec.name;
+  auto* logs = dynamic_cast<StepLogScenario*>(scenario_.get());
+  if (!logs) throw InputError(where, "has no log to replay", "a key `file`, or a scenario of kind \"step_logs\"");
+  if (tracker.space() != logs->truth_space())
+    throw InputError(where + ".components", fmt::format("are {}", fmt::join(tracker.space().components, ", ")),
+                     fmt::format("{}, as the scenario's logs", fmt::join(logs->truth_space().components, ", ")));
+  if (tracker.blocks().innovation) logs->require_innovation();
 }
 
 const TrackerSpec& Study::tracker(const std::string& name) const {

@@ -15,6 +15,7 @@
 #include "truebearing/simulation/scenario.hpp"
 #include "truebearing/study/correction_spec.hpp"
 #include "truebearing/study/parameters_file.hpp"
+#include "truebearing/study/recorded_file.hpp"
 
 namespace truebearing {
 
@@ -40,6 +41,9 @@ class Study {
   const Scenario& scenario() const { return *scenario_; }
   /// What they are compared on: the same, or the sets that the study names.
   std::vector<NamedScenario> evaluation_scenarios() const;
+  /// A recorded track as a scenario: a measurement log with truth, or recorded positions that are measured as the
+  /// study's [recorded] says. The study must outlive it.
+  std::unique_ptr<Scenario> recorded_scenario(const std::filesystem::path& file) const;
   std::uint64_t seed() const { return seed_; }
   std::size_t runs() const { return runs_; }
   std::size_t tuning_runs() const { return tuning_runs_; }
@@ -82,11 +86,13 @@ class Study {
   void read_scoring(TableReader scoring);
   void read_trackers(TableReader table, const std::vector<std::string>& order);
   void check_trackers();
+  void check_replay(const TrackerSpec& spec, const Tracker& tracker);
 
   std::filesystem::path path_;
   std::string name_;
   std::unique_ptr<Scenario> scenario_;
   std::vector<std::pair<std::string, std::unique_ptr<Scenario>>> sets_;
+  std::optional<RecordedSpec> recorded_;
   std::uint64_t seed_ = 1;
   std::size_t runs_ = 1000;
   std::size_t tuning_runs_ = 300;

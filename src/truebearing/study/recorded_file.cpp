@@ -1,0 +1,89 @@
+#include "truebearing/study/recorded_file.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <utility>
+
+#include "truebearing/core/angle.hpp"
+#include "truebearing/core/error.hpp"
+#include "truebearing/measurement/recording_csv.hpp"
+
+namespace truebearing {
+namespace {
+
+std::string note_of(const std::string& file, const GeographicTracks& tracks) {
+  Recording::Counts sum;
+  std::size_t rows = 0;
+  for (const Recording& recording : tracks.recordings) {
+    rows += recording.measurements.size();
+    sum.missing += recording.counts.missing;
+    sum.glitches += recording.counts.glitches;
+    sum.repeated += recording.counts.repeated;
+  }
+  const std::string left_out =
+      tracks.left_out == 0 ? ""
+                           : fmt::format(" ({} left out with fewer than {} usable rows)", tracks.left_out, kFewestRows);
+  return fmt::format("{}: tracks: {}{}; {} measurements, {} missing, {} of them glitches, {} repeated rows dropped",
+                     file, tracks.recordings.size(), left_out, rows, sum.missing, sum.glitches, sum.repeated);
+}
+
+}  // namespace
+
+RecordedSpec read_recorded_spec(TableReader table) {
+  RecordedSpec spec;
+  if (table.has("range_sigma_m")) {
+    spec.sensor.output = RecordedSensor::Output::range_bearing;
+    spec.sensor.sigma_m = table.number("range_sigma_m", kPositive);
+    spec.sensor.bearing_sigma_rad = radians(table.number("bearing_sigma_deg", {0.0, 90.0, true}));
+    const std::vector<double> site_m = table.numbers("site", 2);
+    spec.sensor.site_m << site_m[0], site_m[1];
+  } else {
+    spec.sensor.sigma_m = table.number("position_sigma_m", kPositive);
+  }
+  spec.track.max_speed_mps = table.number_or("max_speed_mps", spec.track.max_speed_mps, kPositive);
+  spec.track.min_speed_mps = table.number_or("min_speed_mps", spec.track.min_speed_mps, kNonNegative);
+  spec.track.max_gap_periods = table.number_or("max_gap_periods", spec.track.max_gap_periods, {1.0, 1e300});
+  table.finish();
+  return spec;
+}
+
+void check_measured(const std::vector<std::string>& measured, const Scenario& scenario, const std::string& where) {
+  const std::vector<std::string> wanted = scenario.simulate({1, Role::evaluation, 0}).measured;
+  if (measured != wanted)
+    throw InputError(where, fmt::format("measures {}", fmt::join(measured, ", ")),
+                     fmt::format("{}, which the study's trackers take", fmt::join(wanted, ", ")));
+}
+
+RecordedFile::RecordedFile(std::filesystem::path file, std::optional<RecordedSpec> spec, const Scenario& trained_on,
+                           std::filesystem::path study)
+    : file_(std::move(file)), spec_(std::move(spec)), trained_on_(trained_on), study_(std::move(study)) {}
+
+std::string RecordedFile::note() const {
+  opened();
+  return note_;
+}
+
+const Scenario& RecordedFile::opened() const {
+  const std::lock_guard lock(mutex_);
+  if (!scenario_) open();
+  return *scenario_;
+}
+
+void RecordedFile::open() const {
+  if (!is_geographic_track(file_)) {
+    scenario_ = std::make_unique<RecordedScenario>(read_recording(file_));
+    return;
+  }
+  if (!spec_)
+    throw InputError(file_.string(), "holds positions, and the study does not say how they are measured",
+                     "a table [recorded] with position_sigma_m in " + study_.string());
+  RecordedSensor sensor = spec_->sensor;
+  check_measured(sensor.measured(), trained_on_, file_.string());
+  const std::vector<Measurement> like = trained_on_.simulate({1, Role::evaluation, 0}).measurements;
+  sensor.reported = std::any_of(like.begin(), like.end(), [](const Measurement& m) { return m.sigma.size() > 0; });
+  GeographicTracks tracks = read_geographic_tracks(file_, spec_->track);
+  note_ = note_of(file_.string(), tracks);
+  scenario_ = std::make_unique<RecordedScenario>(std::move(tracks.recordings), sensor);
+}
+
+}  // namespace truebearing

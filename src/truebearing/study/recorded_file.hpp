@@ -1,0 +1,57 @@
+// A recorded track that a study is compared on: a measurement log with truth, or positions on the globe
+// (measurement/geographic_track.hpp), which every run measures afresh as the study's table [recorded] says:
+//   position_sigma_m                             of a sensor that measures the position per axis; or
+//   range_sigma_m, bearing_sigma_deg, site       of one that stands `site` = [East, North] m from the track's middle
+//   max_speed_mps, min_speed_mps, max_gap_periods  what of the track is believed and scored; optional
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "truebearing/io/table_reader.hpp"
+#include "truebearing/measurement/geographic_track.hpp"
+#include "truebearing/simulation/recorded_scenario.hpp"
+
+namespace truebearing {
+
+struct RecordedSpec {
+  RecordedSensor sensor;
+  GeographicTrackOptions track;
+};
+
+RecordedSpec read_recorded_spec(TableReader table);
+
+/// Throws InputError in the name of `where` unless these are the columns that the scenario measures.
+void check_measured(const std::vector<std::string>& measured, const Scenario& scenario, const std::string& where);
+
+class RecordedFile final : public Scenario {
+ public:
+  /// The file is read when it is first needed: a study is trained and applied without what it is compared on.
+  /// `trained_on` says what is measured, and whether measurements carry their sigma; it must outlive this. `study` is
+  /// for messages.
+  RecordedFile(std::filesystem::path file, std::optional<RecordedSpec> spec, const Scenario& trained_on,
+               std::filesystem::path study);
+
+  /// These throw InputError where the file is absent or at fault, or holds positions and `spec` is empty.
+  Recording simulate(const RunKey& key) const override { return opened().simulate(key); }
+  const StateSpace& truth_space() const override { return opened().truth_space(); }
+  std::string note() const override;
+
+ private:
+  const Scenario& opened() const;
+  void open() const;
+
+  std::filesystem::path file_;
+  std::optional<RecordedSpec> spec_;
+  const Scenario& trained_on_;
+  std::filesystem::path study_;
+  mutable std::mutex mutex_;
+  mutable std::unique_ptr<RecordedScenario> scenario_;
+  mutable std::string note_;
+};
+
+}  // namespace truebearing

@@ -1,0 +1,154 @@
+#include "truebearing/study/recorded_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include "tests/support/error_message.hpp"
+#include "tests/support/radar_study.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "truebearing/study/study.hpp"
+
+namespace truebearing {
+namespace {
+
+using ::testing::AllOf;
+using testing::error_message;
+using ::testing::HasSubstr;
+using testing::replaced;
+using testing::TemporaryFolder;
+
+const std::string kPlaneStudy = R"(name = "flight"
+
+[recorded]
+position_sigma_m = 50.0
+max_speed_mps = 400.0
+
+[sets]
+one = "one.csv"
+two = "folder/two.csv"
+
+[scenario]
+kind = "planar_flight"
+output = "plane"
+period_s = 1.0
+steps = 5
+flight = { speed_mps = 100.0, leg_s = 20.0, turn_s = 20.0, turn_rate_degps = 3.0, roll_in_s = 3.0 }
+site = { closest_m = 0.0 }
+sensor = { position_sigma_m = 50.0 }
+
+[trackers.plain]
+kind = "kalman"
+space = "plane"
+motion = { model = "constant_velocity", noise = "discrete", sigma_a_mps2 = 3.0 }
+measurement = { model = "position", sigma_m = 50.0 }
+start = { kind = "two_point" }
+)";
+
+std::string flight(int rows, double latitude_deg) {
+  std::string text = "time_s,latitude_deg,longitude_deg,altitude_ft\n";
+  for (int k = 0; k < rows; ++k) text += fmt::format("{},{},7.5,1000\n", k, latitude_deg + k * 0.001);
+  return text;
+}
+
+class RecordedFileTest : public ::testing::Test {
+ protected:
+  Study load(const std::string& study) { return Study::load(folder_.write("study.toml", study)); }
+  std::string error_of(const std::string& study) {
+    return error_message([&] { load(study).evaluation_scenarios(); });
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(RecordedFileTest, StudyIsComparedOnTheFlightsThatItLists) {
+  folder_.write("one.csv", flight(25, 45));
+  folder_.write("folder/two.csv", flight(30, -45));
+  const Study study = load(kPlaneStudy);
+  const std::vector<NamedScenario> sets = study.evaluation_scenarios();
+  ASSERT_EQ(sets.size(), 2u);
+  EXPECT_EQ(sets[1].name, "two");
+  const Recording recording = sets[1].scenario->simulate({});
+  EXPECT_EQ(recording.measurements.size(), 30u);
+  EXPECT_EQ(recording.measurements[0].sigma.size(), 0) << "as the simulated ones";
+  EXPECT_NE(recording.measurements[3].z, recording.truth[0].x[3].head<2>());
+  EXPECT_LT((recording.measurements[3].z - recording.truth[0].x[3].head<2>()).norm(), 400.0);
+  EXPECT_THAT(sets[1].scenario->note(),
+              AllOf(HasSubstr("two.csv"), HasSubstr("30 measurements"), HasSubstr("0 missing")));
+  EXPECT_EQ(study.scenario().note(), "");
+}
+
+TEST_F(RecordedFileTest, SigmaIsReportedWhereTheSimulatedSensorReportsIt) {
+  folder_.write("one.csv", flight(25, 45));
+  const Study study = load(replaced(kPlaneStudy, "sensor = { position_sigma_m = 50.0",
+                                    "sensor = { reported = true, position_sigma_m = 70.0"));
+  const auto recorded = study.recorded_scenario(folder_.path() / "one.csv");
+  EXPECT_EQ(recorded->simulate({}).measurements[0].sigma, Eigen::Vector2d(50, 50));
+}
+
+TEST_F(RecordedFileTest, AbsentFileIsNamedWhenItIsNeeded) {
+  folder_.write("one.csv", flight(25, 45));
+  EXPECT_EQ(error_message([&] { load(kPlaneStudy); }), "no error") << "it can be trained without";
+  EXPECT_THAT(error_of(kPlaneStudy), AllOf(HasSubstr("two.csv"), HasSubstr("cannot be opened")));
+}
+
+TEST_F(RecordedFileTest, WhatTheStudyMustSayOfPositions) {
+  folder_.write("one.csv", flight(25, 45));
+  folder_.write("folder/two.csv", flight(30, -45));
+  const std::string none = replaced(kPlaneStudy, "[recorded]\nposition_sigma_m = 50.0\nmax_speed_mps = 400.0\n", "");
+  EXPECT_THAT(error_of(none),
+              AllOf(HasSubstr("one.csv"), HasSubstr("[recorded] with position_sigma_m"), HasSubstr("study.toml")));
+  const auto with = [&](const std::string& keys) {
+    return error_of(replaced(kPlaneStudy, "position_sigma_m = 50.0\nmax", keys + "\nmax"));
+  };
+  EXPECT_THAT(with(""), HasSubstr("recorded.position_sigma_m"));
+  EXPECT_THAT(with("position_sigma_m = 0.0"), HasSubstr("> 0"));
+  EXPECT_THAT(with("position_sigma_m = 1.0\nmin_sped_mps = 1.0"), HasSubstr("did you mean \"min_speed_mps\""));
+  EXPECT_THAT(with("position_sigma_m = 1.0\nmax_gap_periods = 0.5"), HasSubstr("max_gap_periods"));
+  EXPECT_THAT(with("range_sigma_m = 1.0\nbearing_sigma_deg = 1.0\nsite = [0, 5000]"),
+              AllOf(HasSubstr("one.csv"), HasSubstr("measures range_m, bearing_deg"),
+                    HasSubstr("east_m, north_m, which the study's trackers take")));
+}
+
+TEST_F(RecordedFileTest, StudyOnALineTakesNoPositions) {
+  folder_.write("one.csv", flight(25, 45));
+  testing::write_study(folder_, testing::kStudy + "\n[recorded]\nposition_sigma_m = 1.0\n[sets]\none = \"one.csv\"\n");
+  EXPECT_THAT(error_message([&] { Study::load(folder_.path() / "small.toml").evaluation_scenarios(); }),
+              AllOf(HasSubstr("measures east_m, north_m"), HasSubstr("position_m, which the study's trackers take")));
+}
+
+TEST_F(RecordedFileTest, SetMayBeALogWithTruth) {
+  testing::write_study(folder_, testing::kStudy + "\n[sets]\none = \"log.csv\"\ntwo = \"scenario.toml\"\n");
+  folder_.write("log.csv", "time_s,position_m,position_sigma_m,truth_position_m\n0,1,10,0\n1,2,10,5\n");
+  const Study study = Study::load(folder_.path() / "small.toml");
+  EXPECT_EQ(study.evaluation_scenarios()[0].scenario->simulate({}).measurements.size(), 2u);
+  folder_.write("log.csv", "time_s,east_m,east_sigma_m,truth_east_m,truth_north_m\n0,1,10,0,0\n");
+  EXPECT_THAT(error_message([&] { Study::load(folder_.path() / "small.toml").evaluation_scenarios(); }),
+              AllOf(HasSubstr("sets.one"), HasSubstr("another truth")));
+}
+
+TEST_F(RecordedFileTest, TrackerThatReplaysNeedsLogs) {
+  const std::string recorded =
+      "\n[trackers.foreign]\nkind = \"recorded\"\ncomponents = [\"east_m\", \"north_m\", \"east_mps\", \"north_mps\"]\n";
+  EXPECT_THAT(error_message([&] { load(kPlaneStudy + recorded); }),
+              AllOf(HasSubstr("trackers.foreign.innovation"), HasSubstr("`file`")));
+  EXPECT_THAT(error_message([&] { load(kPlaneStudy + recorded + "innovation = true\n"); }),
+              AllOf(HasSubstr("trackers.foreign"), HasSubstr("no log to replay"), HasSubstr("step_logs")));
+  const std::size_t trackers = kPlaneStudy.find("[trackers.plain]");
+  const std::string logs =
+      "name = \"logs\"\n[scenario]\nkind = \"step_logs\"\ntraining = [\"a.csv\"]\nevaluation = [\"a.csv\"]\n" +
+      kPlaneStudy.substr(trackers);
+  EXPECT_EQ(error_message([&] { load(logs + recorded + "innovation = true\n"); }), "no error");
+  EXPECT_THAT(
+      error_message([&] { load(logs + replaced(recorded, "\"east_m\", \"north_m\", ", "") + "innovation = true\n"); }),
+      AllOf(HasSubstr("trackers.foreign.components"), HasSubstr("east_mps, north_mps")));
+}
+
+TEST_F(RecordedFileTest, ExampleOfAForeignTrackerIsValid) {
+  const std::filesystem::path example =
+      std::filesystem::path(TRUEBEARING_SOURCE_DIR) / "examples/foreign_tracker/foreign_tracker.toml";
+  EXPECT_EQ(error_message([&] { Study::load(example); }), "no error");
+}
+
+}  // namespace
+}  // namespace truebearing

@@ -15,6 +15,7 @@ const Scorer kScorer(line_space(), line_space());
 RunScore run(std::vector<double> position, std::vector<double> velocity, std::vector<double> nees) {
   RunScore score;
   score.error = {std::move(position), std::move(velocity)};
+  score.quantity_nees = {nees, nees};
   score.nees = std::move(nees);
   return score;
 }

@@ -8,6 +8,7 @@
 
 #include "tests/support/error_message.hpp"
 #include "tests/support/statistics.hpp"
+#include "truebearing/core/angle.hpp"
 
 namespace truebearing {
 namespace {
@@ -18,18 +19,19 @@ using ::testing::HasSubstr;
 using testing::mean_margin;
 using testing::moments;
 using testing::variance_fits;
-using Output = PlanarFlightParameters::Output;
+using Output = PlanarSensor::Output;
 
 const RunKey kKey{1, Role::evaluation, 0};
 
 PlanarFlightParameters flight_past_a_site() {
   PlanarFlightParameters parameters;
+  parameters.sensor.output = Output::range;
   parameters.period_s = 0.1;
   parameters.steps = 3000;
   parameters.flight.leg_s = 40.0;
   parameters.flight.turn_s = 30.0;
-  parameters.site.closest_m = 3000.0;
-  parameters.sigma_m = 150.0;
+  parameters.site = SiteBesideTrack{3000.0};
+  parameters.sensor.sigma_m = 150.0;
   return parameters;
 }
 
@@ -56,7 +58,7 @@ TEST(PlanarFlightScenario, RangeIsTheNormOfThePlane) {
   PlanarFlightParameters parameters = flight_past_a_site();
   parameters.jitter = RecorderJitter{{0.5, 0.5}, 1.0};
   const Recording range = PlanarFlightScenario(parameters).simulate(kKey);
-  parameters.output = Output::plane;
+  parameters.sensor.output = Output::position;
   const PlanarFlightScenario in_plane(parameters);
   const Recording plane = in_plane.simulate(kKey);
   EXPECT_EQ(plane.measured, (std::vector<std::string>{"east_m", "north_m"}));
@@ -72,8 +74,8 @@ TEST(PlanarFlightScenario, MeasurementErrorIsGaussianOnTheRecordedPosition) {
   PlanarFlightParameters parameters = flight_past_a_site();
   parameters.steps = 10'000;
   parameters.jitter = RecorderJitter{{0.5, 0.5}, 2.0};
-  for (const Output output : {Output::range, Output::plane}) {
-    parameters.output = output;
+  for (const Output output : {Output::range, Output::position}) {
+    parameters.sensor.output = output;
     const Recording recording = PlanarFlightScenario(parameters).simulate(kKey);
     for (Eigen::Index axis = 0; axis < recording.measurements[0].z.size(); ++axis) {
       std::vector<double> errors;
@@ -87,7 +89,7 @@ TEST(PlanarFlightScenario, MeasurementErrorIsGaussianOnTheRecordedPosition) {
 
 TEST(PlanarFlightScenario, JitterMovesPositionsAndNotVelocities) {
   PlanarFlightParameters parameters = flight_past_a_site();
-  parameters.output = Output::plane;
+  parameters.sensor.output = Output::position;
   parameters.flight.leg_s = 1e6;
   parameters.jitter = RecorderJitter{{1.0}, 0.0};
   const Recording smooth = PlanarFlightScenario(parameters).simulate(kKey);
@@ -115,7 +117,7 @@ TEST(PlanarFlightScenario, SiteStandsOffTheTrackByTheDistanceDrawn) {
   parameters.flight.leg_s = 1e6;
   for (std::uint64_t run = 0; run < 50; ++run) EXPECT_NEAR(closest_m(run), 3000.0, 1e-6);
 
-  parameters.site = {3000.0, 0.3, 500.0};
+  parameters.site = SiteBesideTrack{3000.0, 0.3, 500.0};
   std::vector<double> overflights;
   for (std::uint64_t run = 0; run < 1000; ++run) overflights.push_back(closest_m(run) < 1000.0);
   EXPECT_NEAR(moments(overflights).mean, 0.3, mean_margin(std::sqrt(0.21), overflights.size()));
@@ -127,9 +129,61 @@ TEST(PlanarFlightScenario, SiteStandsOffTheTrackByTheDistanceDrawn) {
 TEST(PlanarFlightScenario, SigmaIsReportedWhereAsked) {
   PlanarFlightParameters parameters = flight_past_a_site();
   EXPECT_EQ(PlanarFlightScenario(parameters).simulate(kKey).measurements[0].sigma.size(), 0);
-  parameters.reported = true;
-  parameters.output = Output::plane;
+  parameters.sensor.reported = true;
+  parameters.sensor.output = Output::position;
   EXPECT_EQ(PlanarFlightScenario(parameters).simulate(kKey).measurements[0].sigma, Eigen::Vector2d(150.0, 150.0));
+}
+
+TEST(PlanarFlightScenario, SiteAtRangeIsThatFarAtThatStep) {
+  PlanarFlightParameters parameters = flight_past_a_site();
+  parameters.steps = 100;
+  parameters.sensor.output = Output::range_bearing;
+  parameters.sensor.sigma_m = 50.0;
+  parameters.sensor.bearing_sigma_rad = 0.005;
+  parameters.site = SiteAtRange{Distribution(Distribution::Kind::uniform, {8000.0, 30000.0}), 60};
+  const PlanarFlightScenario scenario(parameters);
+  for (std::uint64_t run = 0; run < 50; ++run) {
+    const Recording recording = scenario.simulate({1, Role::evaluation, run});
+    EXPECT_EQ(recording.measured, (std::vector<std::string>{"range_m", "bearing_deg"}));
+    const BoundedVector& x = recording.truth[0].x[59];
+    EXPECT_GE(x.head(2).norm(), 8000.0);
+    EXPECT_LE(x.head(2).norm(), 30000.0);
+    const BoundedVector& z = recording.measurements[59].z;
+    EXPECT_LT(std::abs(z[0] - x.head(2).norm()), 5.0 * 50.0);
+    EXPECT_LT(std::abs(wrap_pi(z[1] - std::atan2(x[0], x[1]))), 5.0 * 0.005);
+  }
+}
+
+TEST(PlanarFlightScenario, OutliersAreAsRareAndAsLargeAsAsked) {
+  PlanarFlightParameters parameters = flight_past_a_site();
+  parameters.steps = 20000;
+  parameters.sensor.output = Output::position;
+  parameters.sensor.sigma_m = 10.0;
+  parameters.sensor.outlier_share = 0.03;
+  parameters.sensor.outlier_factor = 10.0;
+  const Recording recording = PlanarFlightScenario(parameters).simulate(kKey);
+  std::vector<double> squared;
+  for (std::size_t k = 0; k < recording.measurements.size(); ++k)
+    squared.push_back((recording.measurements[k].z - recording.truth[0].x[k].head(2)).squaredNorm());
+  const testing::Moments found = moments(squared);
+  EXPECT_NEAR(found.mean, 200.0 * (0.97 + 0.03 * 100.0), mean_margin(std::sqrt(found.variance), squared.size()));
+}
+
+TEST(PlanarFlightScenario, PhasesTellManoeuvresFromQuiet) {
+  PlanarFlightParameters parameters = flight_past_a_site();
+  parameters.period_s = 1.0;
+  parameters.steps = 200;
+  parameters.flight.first_leg_s = 20.0;
+  parameters.flight.leg_s = 30.0;
+  parameters.flight.turn_s = 10.0;
+  parameters.quiet_after_s = 12.0;
+  const Recording recording = PlanarFlightScenario(parameters).simulate(kKey);
+  EXPECT_EQ(recording.phases, (std::vector<std::string>{"manoeuvre", "quiet"}));
+  // Sample k is at k s of the flight: quiet to 20 s, turning to 30 s, quiet again from 42 s to 60 s, and so on.
+  for (std::size_t k = 0; k < 200; ++k) {
+    const bool quiet = k <= 20 || (k - 20) % 40 == 0 || (k - 20) % 40 > 22;
+    EXPECT_EQ(recording.truth[0].phase[k], quiet ? 1 : 0) << k;
+  }
 }
 
 TEST(PlanarFlightScenario, KeysAreChecked) {

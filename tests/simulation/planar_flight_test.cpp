@@ -21,7 +21,7 @@ RandomStream stream(std::uint64_t run = 0) {
 
 Eigen::Matrix4Xd fly(const PlanarFlight& flight, double period_s, int samples, std::uint64_t run = 0) {
   RandomStream numbers = stream(run);
-  return flight.fly(period_s, samples, numbers);
+  return flight.fly(period_s, samples, numbers).states;
 }
 
 /// Course changes between samples, clockwise.
@@ -123,6 +123,48 @@ TEST(PlanarFlight, FirstCourseIsAnyCourse) {
     ++counts.at(static_cast<std::size_t>((std::atan2(track(2, 0), track(3, 0)) + kPi) / (2.0 * kPi) * 8.0));
   }
   EXPECT_TRUE(testing::counts_are_even(counts));
+}
+
+TEST(PlanarFlight, AccelerationsKeepTheCourseAndTheSpeedLimits) {
+  PlanarFlight flight;
+  flight.leg_s = 10.0;
+  flight.roll_in_s = 0.0;
+  flight.acceleration_share = 1.0;
+  flight.acceleration_s = 20.0;
+  flight.acceleration_mps2 = 10.0;
+  flight.lowest_speed_mps = 50.0;
+  flight.highest_speed_mps = 200.0;
+  bool slowest = false, fastest = false;
+  for (std::uint64_t run = 0; run < 20; ++run) {
+    const Eigen::Matrix4Xd track = fly(flight, 1.0, 300, run);
+    const Eigen::Vector2d course = track.col(0).tail<2>().normalized();
+    for (Eigen::Index k = 0; k < track.cols(); ++k) {
+      const double speed = track.col(k).tail<2>().norm();
+      EXPECT_TRUE(track.col(k).tail<2>().isApprox(speed * course, 1e-9));
+      EXPECT_GE(speed, 50.0 - 1e-9);
+      EXPECT_LE(speed, 200.0 + 1e-9);
+      slowest |= speed < 51.0;
+      fastest |= speed > 199.0;
+    }
+    for (Eigen::Index k = 1; k + 1 < track.cols(); ++k)  // the position is the integral of the velocity
+      EXPECT_LT((track.col(k + 1).head<2>() - track.col(k).head<2>() -
+                 0.5 * (track.col(k + 1).tail<2>() + track.col(k).tail<2>()))
+                    .norm(),
+                2.6);
+  }
+  EXPECT_TRUE(slowest && fastest);
+}
+
+TEST(PlanarFlight, QuietFlightsHaveNoManoeuvre) {
+  PlanarFlight flight;
+  flight.leg_s = 10.0;
+  flight.quiet_share = 0.2;
+  std::vector<double> quiet;
+  for (std::uint64_t run = 0; run < 1000; ++run) {
+    const Eigen::Matrix4Xd track = fly(flight, 1.0, 60, run);
+    quiet.push_back((track.col(59).tail<2>() - track.col(0).tail<2>()).norm() < 1e-9);
+  }
+  EXPECT_NEAR(moments(quiet).mean, 0.2, mean_margin(0.4, quiet.size()));
 }
 
 }  // namespace

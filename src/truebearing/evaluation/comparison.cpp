@@ -13,6 +13,7 @@ namespace {
 struct SetScores {
   std::vector<std::vector<RunScore>> runs;  // [run][tracker]
   std::vector<double> time_s;               // of the first run
+  std::vector<std::string> phases;
 };
 
 SetScores run_set(const TrackerSet& trackers, const std::vector<Scorer>& scorers,
@@ -25,8 +26,9 @@ SetScores run_set(const TrackerSet& trackers, const std::vector<Scorer>& scorers
     if (!clones[worker]) clones[worker].emplace(trackers.clone());
     const Recording recording = scenario.simulate({options.seed, options.role, run});
     set.runs[run] = score_recording(*clones[worker], scorers, recording, options.scoring);
-    if (run == 0)
-      for (const Measurement& measurement : recording.measurements) set.time_s.push_back(measurement.time_s);
+    if (run != 0) return;
+    for (const Measurement& measurement : recording.measurements) set.time_s.push_back(measurement.time_s);
+    set.phases = recording.phases;
   };
   Progress progress;
   if (options.progress)
@@ -84,12 +86,14 @@ Comparison compare(const TrackerSet& trackers, const std::vector<NamedScenario>&
     for (const std::vector<RunScore>& run : set.runs) all.push_back(&run);
   Comparison comparison = summarise_runs(trackers, scorers, all, options);
   comparison.time_s = sets.front().time_s;
+  comparison.phases = sets.front().phases;
   if (sets.size() < 2) return comparison;
   for (std::size_t i = 0; i < sets.size(); ++i) {
     std::vector<const std::vector<RunScore>*> runs;
     for (const std::vector<RunScore>& run : sets[i].runs) runs.push_back(&run);
     comparison.sets.emplace_back(scenarios[i].name, summarise_runs(trackers, scorers, runs, options));
     comparison.sets.back().second.time_s = sets[i].time_s;
+    comparison.sets.back().second.phases = sets[i].phases;
   }
   return comparison;
 }

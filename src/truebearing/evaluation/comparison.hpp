@@ -26,7 +26,8 @@ struct Comparison {
   std::string study;
   std::uint64_t seed = 0;
   std::size_t runs = 0;
-  std::vector<double> time_s;  ///< of the steps, in the first run
+  std::vector<double> time_s;       ///< of the steps, in the first run
+  std::vector<std::string> phases;  ///< names of the phases that the scenario tells apart
   std::vector<TrackerSummary> trackers;
   struct Pair {
     std::string a, b;

@@ -43,6 +43,39 @@ Json series_json(const Comparison& comparison, const TrackerSummary& summary) {
   return {{"time_s", numbers(comparison.time_s)}, {"rmse", rmse}};
 }
 
+std::string unit_of(const std::string& quantity) {
+  const std::size_t underscore = quantity.rfind('_');
+  const std::string unit = underscore == std::string::npos ? "" : quantity.substr(underscore + 1);
+  return unit == "mps" ? "m/s" : unit;
+}
+
+std::string name_of(const std::string& quantity) {
+  return quantity.substr(0, quantity.rfind('_'));
+}
+
+// What a tracker has besides: the RMSE of each phase, and the largest of the series.
+Json metrics_json(const Comparison& comparison, const TrackerSummary& summary) {
+  Json metrics = Json::array();
+  for (const QuantitySummary& quantity : summary.quantities) {
+    const auto add = [&](const std::string& what, double value, double se) {
+      metrics.push_back({{"name", fmt::format("{}_rmse_{}", name_of(quantity.name), what)},
+                         {"unit", unit_of(quantity.name)},
+                         {"value", number(value)},
+                         {"se", number(se)}});
+    };
+    metrics.push_back({{"name", fmt::format("{}_coverage95", name_of(quantity.name))},
+                       {"unit", "share"},
+                       {"value", number(quantity.coverage95)},
+                       {"se", nullptr}});
+    for (std::size_t i = 0; i < std::min(quantity.phases.size(), comparison.phases.size()); ++i)
+      add(comparison.phases[i], quantity.phases[i].rmse, quantity.phases[i].rmse_se);
+    double peak = std::nan("");
+    for (const double value : quantity.series) peak = std::fmax(peak, value);
+    if (!comparison.phases.empty()) add("peak", peak, std::nan(""));
+  }
+  return metrics;
+}
+
 Json tracker_json(const Comparison& comparison, const TrackerSummary& summary) {
   const TrackerSummary* plain = comparison.tracker(kPlain);
   Json json;
@@ -60,19 +93,9 @@ Json tracker_json(const Comparison& comparison, const TrackerSummary& summary) {
   json["scored_steps"] = summary.scored_steps;
   if (summary.corrected_steps > 0)
     json["correction"] = {{"mean_gate", number(summary.mean_gate)}, {"limited_share", number(summary.limited_share)}};
-  json["metrics"] = Json::array();
+  json["metrics"] = metrics_json(comparison, summary);
   json["series"] = series_json(comparison, summary);
   return json;
-}
-
-std::string unit_of(const std::string& quantity) {
-  const std::size_t underscore = quantity.rfind('_');
-  const std::string unit = underscore == std::string::npos ? "" : quantity.substr(underscore + 1);
-  return unit == "mps" ? "m/s" : unit;
-}
-
-std::string name_of(const std::string& quantity) {
-  return quantity.substr(0, quantity.rfind('_'));
 }
 
 // Three or four significant digits, without an exponent.
@@ -121,7 +144,11 @@ std::vector<std::string> heading(const Comparison& comparison) {
     row.push_back("+-");
     if (comparison.tracker(kPlain)) row.push_back("/plain");
   }
-  row.insert(row.end(), {"NEES", "cover95", "gate"});
+  row.insert(row.end(), {"NEES", "cover95"});
+  if (columns_of(comparison).size() > 1)
+    for (const QuantitySummary& quantity : columns_of(comparison))
+      row.push_back(fmt::format("({})", name_of(quantity.name)));
+  row.push_back("gate");
   if (!comparison.ns_per_step.empty()) row.push_back("ns/step");
   return row;
 }
@@ -137,16 +164,39 @@ std::vector<std::string> table_row(const Comparison& comparison, const TrackerSu
   }
   row.push_back(fmt::format("{}/{}", figure(summary.nees), summary.dimension));
   row.push_back(figure(summary.coverage95));
+  if (columns_of(comparison).size() > 1)
+    for (const QuantitySummary& column : columns_of(comparison)) {
+      const QuantitySummary* quantity = summary.quantity(column.name);
+      row.push_back(quantity ? figure(quantity->coverage95) : "-");
+    }
   row.push_back(summary.corrected_steps > 0 ? figure(summary.mean_gate) : "");
   for (const auto& [name, ns] : comparison.ns_per_step)
     if (name == summary.name) row.push_back(fmt::format("{:.0f}", ns));
   return row;
 }
 
+// RMSE by phase, where the scenario tells phases apart.
+std::string phase_table(const Comparison& comparison) {
+  if (comparison.phases.empty()) return {};
+  std::vector<std::vector<std::string>> rows(1, {"RMSE by phase"});
+  for (const QuantitySummary& column : columns_of(comparison))
+    for (const std::string& phase : comparison.phases)
+      rows[0].push_back(fmt::format("{} {} {}", phase, name_of(column.name), unit_of(column.name)));
+  for (const TrackerSummary& summary : comparison.trackers) {
+    rows.push_back({summary.name});
+    for (const QuantitySummary& column : columns_of(comparison)) {
+      const QuantitySummary* quantity = summary.quantity(column.name);
+      for (std::size_t i = 0; i < comparison.phases.size(); ++i)
+        rows.back().push_back(quantity && i < quantity->phases.size() ? figure(quantity->phases[i].rmse) : "-");
+    }
+  }
+  return fmt::format("\n{}", aligned(rows));
+}
+
 std::string tables(const Comparison& comparison) {
   std::vector<std::vector<std::string>> rows{heading(comparison)};
   for (const TrackerSummary& summary : comparison.trackers) rows.push_back(table_row(comparison, summary));
-  std::string text = aligned(rows);
+  std::string text = aligned(rows) + phase_table(comparison);
   if (comparison.pairs.empty()) return text;
   rows.assign(1, {"paired, per-run RMSE", "", "mean", "+-", "in standard errors"});
   for (const Comparison::Pair& pair : comparison.pairs)

@@ -38,6 +38,7 @@ Scorer::Scorer(const StateSpace& truth, const StateSpace& estimate) {
 void Scorer::prepare(RunScore& score, std::size_t steps) const {
   score.error.assign(quantities_.size(), std::vector<double>(steps, kNotScored));
   score.nees.assign(steps, kNotScored);
+  score.quantity_nees.assign(quantities_.size(), std::vector<double>(steps, kNotScored));
 }
 
 void Scorer::score_step(const BoundedVector& truth, const StepRecord& record, std::size_t step, RunScore& score) const {
@@ -50,9 +51,9 @@ void Scorer::score_step(const BoundedVector& truth, const StepRecord& record, st
     for (int j = 0; j < n; ++j) P(i, j) = record.P(estimate_index_[row], estimate_index_[static_cast<std::size_t>(j)]);
   }
   for (std::size_t q = 0; q < quantities_.size(); ++q) {
-    double squared = 0.0;
-    for (const int place : quantities_[q]) squared += d[place] * d[place];
-    score.error[q][step] = std::sqrt(squared);
+    const BoundedVector part = d(quantities_[q]);
+    score.error[q][step] = part.norm();
+    score.quantity_nees[q][step] = mahalanobis_squared(BoundedMatrix(P(quantities_[q], quantities_[q])), part);
   }
   score.nees[step] = mahalanobis_squared(P, d);
   if (record.correction) {
@@ -70,7 +71,10 @@ std::vector<RunScore> score_recording(TrackerSet& trackers, const std::vector<Sc
   const std::vector<BoundedVector>& truth = recording.truth.front().x;
   const std::size_t steps = recording.measurements.size();
   std::vector<RunScore> scores(scorers.size());
-  for (std::size_t i = 0; i < scorers.size(); ++i) scorers[i].prepare(scores[i], steps);
+  for (std::size_t i = 0; i < scorers.size(); ++i) {
+    scorers[i].prepare(scores[i], steps);
+    scores[i].phase = recording.truth.front().phase;
+  }
 
   trackers.reset();
   for (std::size_t step = 0; step < steps; ++step) {

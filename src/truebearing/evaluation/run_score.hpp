@@ -14,9 +14,11 @@ namespace truebearing {
 struct RunScore {
   std::vector<std::vector<double>> error;  ///< [quantity][step]: 2-norm of truth - estimate; NaN where not scored
   std::vector<double> nees;                ///< [step]: d' P^-1 d; NaN where not scored
-  int gate_limited = 0;                    ///< scored steps in which a correction was limited by kappa
-  int corrected = 0;                       ///< scored steps of a corrected tracker
-  double gate_sum = 0.0;                   ///< sum of the gate's weight over them
+  std::vector<std::vector<double>> quantity_nees;  ///< [quantity][step]: the same for its components alone
+  std::vector<int> phase;                          ///< [step], place in the recording's phases; empty where it has none
+  int gate_limited = 0;                            ///< scored steps in which a correction was limited by kappa
+  int corrected = 0;                               ///< scored steps of a corrected tracker
+  double gate_sum = 0.0;                           ///< sum of the gate's weight over them
 };
 
 /// What is scored.
@@ -35,6 +37,8 @@ class Scorer {
   const std::vector<std::string>& quantities() const { return quantity_names_; }
   /// How many components the NEES is taken over: its expected value for a consistent tracker.
   int dimension() const { return static_cast<int>(truth_index_.size()); }
+  /// The same for one quantity.
+  int dimension(std::size_t quantity) const { return static_cast<int>(quantities_[quantity].size()); }
 
   void prepare(RunScore& score, std::size_t steps) const;
   void score_step(const BoundedVector& truth, const StepRecord& record, std::size_t step, RunScore& score) const;

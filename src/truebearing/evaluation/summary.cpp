@@ -53,7 +53,37 @@ double median_of(std::vector<double> values) {
   return 0.5 * (*middle + *std::max_element(values.begin(), middle));
 }
 
-QuantitySummary summarise_quantity(const std::string& name, std::size_t q, const std::vector<const RunScore*>& scores) {
+// The squared errors of a run's steps in that phase.
+SquaredErrors squared_errors_in(const std::vector<double>& errors, const std::vector<int>& phases, int phase) {
+  SquaredErrors total;
+  for (std::size_t step = 0; step < std::min(errors.size(), phases.size()); ++step)
+    if (phases[step] == phase && !std::isnan(errors[step])) {
+      total.sum += errors[step] * errors[step];
+      total.count += 1.0;
+    }
+  return total;
+}
+
+std::vector<QuantitySummary::Phase> summarise_phases(std::size_t q, const std::vector<const RunScore*>& scores) {
+  int count = 0;
+  for (const RunScore* score : scores)
+    for (const int phase : score->phase) count = std::max(count, phase + 1);
+  std::vector<QuantitySummary::Phase> phases;
+  for (int phase = 0; phase < count; ++phase) {
+    std::vector<SquaredErrors> runs;
+    SquaredErrors total;
+    for (const RunScore* score : scores) {
+      runs.push_back(squared_errors_in(score->error[q], score->phase, phase));
+      total.sum += runs.back().sum;
+      total.count += runs.back().count;
+    }
+    phases.push_back({root_mean(total), jackknife_se(runs, total)});
+  }
+  return phases;
+}
+
+QuantitySummary summarise_quantity(const std::string& name, std::size_t q, int dimension,
+                                   const std::vector<const RunScore*>& scores) {
   QuantitySummary summary;
   summary.name = name;
   std::vector<SquaredErrors> runs;
@@ -77,6 +107,16 @@ QuantitySummary summarise_quantity(const std::string& name, std::size_t q, const
   summary.rmse_se = jackknife_se(runs, total);
   summary.median = median_of(std::move(all));
   for (const SquaredErrors& step : steps) summary.series.push_back(root_mean(step));
+  summary.phases = summarise_phases(q, scores);
+  const double quantile = chi_square_quantile(0.95, dimension);
+  double covered = 0.0, count = 0.0;
+  for (const RunScore* score : scores)
+    for (const double nees : score->quantity_nees[q]) {
+      if (std::isnan(nees)) continue;
+      covered += nees <= quantile ? 1.0 : 0.0;
+      count += 1.0;
+    }
+  summary.coverage95 = count > 0.0 ? covered / count : kNaN;
   return summary;
 }
 
@@ -105,7 +145,7 @@ TrackerSummary summarise(const std::string& name, const Scorer& scorer, const st
   summary.name = name;
   summary.dimension = scorer.dimension();
   for (std::size_t q = 0; q < scorer.quantities().size(); ++q)
-    summary.quantities.push_back(summarise_quantity(scorer.quantities()[q], q, scores));
+    summary.quantities.push_back(summarise_quantity(scorer.quantities()[q], q, scorer.dimension(q), scores));
 
   const double quantile = chi_square_quantile(0.95, scorer.dimension());
   double nees_sum = 0.0, covered = 0.0, count = 0.0, gate_sum = 0.0, limited = 0.0, lost = 0.0;

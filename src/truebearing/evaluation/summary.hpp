@@ -14,7 +14,13 @@ struct QuantitySummary {
   double rmse = 0.0;
   double rmse_se = 0.0;        ///< jackknife over runs; NaN for a single run
   double median = 0.0;         ///< of the error norm over runs and scored steps
+  double coverage95 = 0.0;     ///< share of them inside the 95 % ellipse of the quantity's own covariance
   std::vector<double> series;  ///< RMSE over runs at each step; NaN where not scored
+  struct Phase {
+    double rmse = 0.0;
+    double rmse_se = 0.0;
+  };
+  std::vector<Phase> phases;  ///< over the steps of each phase; empty where the recordings tell none
 };
 
 struct TrackerSummary {

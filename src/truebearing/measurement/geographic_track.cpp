@@ -8,7 +8,9 @@
 #include <GeographicLib/LocalCartesian.hpp>
 #include <GeographicLib/Math.hpp>
 #include <span>
+#include <utility>
 
+#include "truebearing/core/angle.hpp"
 #include "truebearing/core/error.hpp"
 #include "truebearing/io/csv.hpp"
 #include "truebearing/measurement/velocity_truth.hpp"
@@ -23,6 +25,7 @@ struct Fix {
   double time_s;
   double latitude_deg;  // NaN, both, where there is none
   double longitude_deg;
+  Eigen::Vector2d velocity_mps{kNaN, kNaN};  // East, North, as the target itself said
 
   bool is_missing() const { return std::isnan(latitude_deg); }
   bool operator==(const Fix& other) const {
@@ -41,6 +44,7 @@ struct Target {
 struct Layout {
   std::size_t time, latitude, longitude;
   int target = -1;
+  int speed = -1, course = -1;
 };
 
 Layout read_layout(const CsvReader& csv) {
@@ -56,6 +60,11 @@ Layout read_layout(const CsvReader& csv) {
           "one column that separates targets");
     layout.target = column;
   }
+  for (const auto& [speed, course] : {std::pair("groundspeed_kn", "track_deg"), std::pair("speed_kn", "course_deg")})
+    if (csv.column(speed) >= 0 && csv.column(course) >= 0) {
+      layout.speed = csv.column(speed);
+      layout.course = csv.column(course);
+    }
   return layout;
 }
 
@@ -70,6 +79,12 @@ Fix read_fix(const CsvReader& csv, const Layout& layout) {
   Fix fix{csv.number(layout.time), read_angle(csv, layout.latitude, -90.0, 90.0),
           read_angle(csv, layout.longitude, -180.0, 360.0)};
   if (std::isnan(fix.time_s)) throw csv.error(layout.time, "is missing or infinite", "a finite time");
+  if (layout.speed >= 0) {
+    constexpr double kKnot_mps = 1852.0 / 3600.0;
+    const double course_rad = radians(csv.number(static_cast<std::size_t>(layout.course)));
+    fix.velocity_mps = kKnot_mps * csv.number(static_cast<std::size_t>(layout.speed)) *
+                       Eigen::Vector2d(std::sin(course_rad), std::cos(course_rad));
+  }
   if (std::isnan(fix.latitude_deg) || std::isnan(fix.longitude_deg)) fix.latitude_deg = fix.longitude_deg = kNaN;
   return fix;
 }
@@ -170,8 +185,11 @@ void complete_truth(const Target& target, const GeographicTrackOptions& options,
   starts.push_back(x.size());
   for (std::size_t i = 0; i + 1 < starts.size(); ++i) {
     const std::size_t count = starts[i + 1] - starts[i];
-    complete_velocities(plane_space(), {true, true, false, false}, std::span(time_s).subspan(starts[i], count),
-                        std::span(x).subspan(starts[i], count));
+    if (options.recorded_velocity)
+      for (std::size_t k = starts[i]; k < starts[i + 1]; ++k) x[k].tail<2>() = target.fixes[k].velocity_mps;
+    else
+      complete_velocities(plane_space(), {true, true, false, false}, std::span(time_s).subspan(starts[i], count),
+                          std::span(x).subspan(starts[i], count));
   }
   for (std::size_t i = 1; i + 1 < starts.size(); ++i) x[starts[i]].setConstant(kNaN);
   for (BoundedVector& state : x)
@@ -205,6 +223,9 @@ Recording make_recording(const Target& target, const GeographicTrackOptions& opt
 
 GeographicTracks read_tracks(CsvReader csv, const GeographicTrackOptions& options) {
   GeographicTracks tracks;
+  if (options.recorded_velocity && read_layout(csv).speed < 0)
+    throw InputError(csv.name(), "records no velocity",
+                     "columns groundspeed_kn and track_deg, or speed_kn and course_deg");
   for (Target& target : read_targets(csv)) {
     remove_glitches(target, options.max_speed_mps);
     const auto usable =

@@ -1,6 +1,7 @@
 // Recorded positions on the globe as recordings in the plane: CSV with `time_s`, `latitude_deg` and `longitude_deg`
 // (WGS-84), and optionally `vessel`, `flight` or `track`, a number that separates targets whose rows are interleaved.
-// Other columns are passed over: what a transponder says of its own course and speed is no truth.
+// Other columns are passed over. What a transponder says of its own course and speed is no truth as a rule; it is taken
+// for one only on request, for a recording whose positions are too rough to differentiate.
 //
 // Each target becomes a recording of east_m and north_m in a local East-North frame whose origin lies in the middle of
 // its area. The truth is the recorded position itself and its velocity_truth(), which does not reach across a gap.
@@ -22,6 +23,9 @@ struct GeographicTrackOptions {
   double max_speed_mps = std::numeric_limits<double>::infinity();
   /// Slower than this, the truth is NaN: measured, but not scored.
   double min_speed_mps = 0.0;
+  /// True velocity from the columns groundspeed_kn and track_deg, or speed_kn and course_deg, in place of the slope of
+  /// the positions; missing where a row has none.
+  bool recorded_velocity = false;
   /// The first step after a gap of more than that many median periods has no truth either.
   double max_gap_periods = std::numeric_limits<double>::infinity();
 };

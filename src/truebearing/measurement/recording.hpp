@@ -18,6 +18,7 @@ struct StepLog;
 struct Truth {
   int track = 0;
   std::vector<BoundedVector> x;
+  std::vector<int> phase;  ///< what the target was doing, by place in Recording::phases; empty where that is not told
 };
 
 struct Recording {
@@ -25,6 +26,7 @@ struct Recording {
   std::vector<Measurement> measurements;
   const StateSpace* truth_space = nullptr;  ///< nullptr where there is no truth
   std::vector<Truth> truth;                 ///< one per target; each as long as `measurements`
+  std::vector<std::string> phases;          ///< names of what targets do, for the report: "manoeuvre", "quiet"
 
   /// What was found and mended while a log was read.
   struct Counts {

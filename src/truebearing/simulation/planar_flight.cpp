@@ -2,48 +2,67 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "truebearing/core/angle.hpp"
 
 namespace truebearing {
 namespace {
 
-/// Turn rate as a function of the time flown: legs and turns, drawn as the time reaches them.
-class TurnProgramme {
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+struct Rates {
+  double turn_radps = 0.0;
+  double acceleration_mps2 = 0.0;
+};
+
+/// Turn rate and acceleration as functions of the time flown: legs and manoeuvres, drawn as the time reaches them.
+class Programme {
  public:
-  TurnProgramme(const PlanarFlight& flight, RandomStream& stream)
+  Programme(const PlanarFlight& flight, RandomStream& stream)
       : flight_(flight), stream_(stream), roll_in_s_(flight.roll_in_s.draw(stream)) {
-    end_s_ = flight_.leg_s.draw(stream_) * stream_.uniform();
+    end_s_ = flight.first_leg_s ? flight.first_leg_s->draw(stream_) : flight_.leg_s.draw(stream_) * stream_.uniform();
+    if (flight.quiet_share > 0.0 && stream_.uniform() < flight.quiet_share) end_s_ = kInfinity;
   }
 
   /// Times must not decrease from call to call.
-  double rate_radps(double time_s) {
+  Rates rates(double time_s) {
     while (time_s >= end_s_) begin_next();
-    if (!turning_) return 0.0;
+    if (!manoeuvring_) return {};
+    manoeuvre_end_s_ = end_s_;
     const double from_end_s = std::min(time_s - begin_s_, end_s_ - time_s);
-    return roll_in_s_ > 0.0 ? rate_radps_ * std::min(1.0, from_end_s / roll_in_s_) : rate_radps_;
+    const double share = roll_in_s_ > 0.0 ? std::min(1.0, from_end_s / roll_in_s_) : 1.0;
+    return {share * full_.turn_radps, share * full_.acceleration_mps2};
   }
+
+  double since_manoeuvre_s(double time_s) const { return std::max(time_s - manoeuvre_end_s_, 0.0); }
 
  private:
   void begin_next() {
-    turning_ = !turning_;
+    manoeuvring_ = !manoeuvring_;
     begin_s_ = end_s_;
-    if (!turning_) {
+    if (!manoeuvring_) {
       end_s_ += flight_.leg_s.draw(stream_);
       return;
     }
-    end_s_ += flight_.turn_s.draw(stream_);
+    full_ = {};
+    const bool acceleration = flight_.acceleration_share > 0.0 && stream_.uniform() < flight_.acceleration_share;
+    end_s_ += (acceleration ? flight_.acceleration_s : flight_.turn_s).draw(stream_);
     const double side = stream_.uniform() < 0.5 ? -1.0 : 1.0;
-    rate_radps_ = side * radians(flight_.turn_rate_degps.draw(stream_));
+    if (acceleration)
+      full_.acceleration_mps2 = side * flight_.acceleration_mps2.draw(stream_);
+    else
+      full_.turn_radps = side * radians(flight_.turn_rate_degps.draw(stream_));
   }
 
   const PlanarFlight& flight_;
   RandomStream& stream_;
   double roll_in_s_;
-  bool turning_ = false;
+  bool manoeuvring_ = false;
   double begin_s_ = 0.0;
   double end_s_ = 0.0;
-  double rate_radps_ = 0.0;
+  double manoeuvre_end_s_ = -kInfinity;  // of the last one that was entered
+  Rates full_;
 };
 
 Eigen::Vector2d direction(double course_rad) {
@@ -52,24 +71,31 @@ Eigen::Vector2d direction(double course_rad) {
 
 }  // namespace
 
-Eigen::Matrix4Xd PlanarFlight::fly(double period_s, int samples, RandomStream& stream) const {
+FlownTrack PlanarFlight::fly(double period_s, int samples, RandomStream& stream) const {
   constexpr double kMaxSubStep_s = 0.1;
-  const double speed = speed_mps.draw(stream);
+  double speed = speed_mps.draw(stream);
   double course_rad = stream.uniform(-kPi, kPi);
-  TurnProgramme programme(*this, stream);
+  Programme programme(*this, stream);
 
   const int sub_steps = static_cast<int>(std::ceil(period_s / kMaxSubStep_s));
   const double h = period_s / sub_steps;
-  Eigen::Matrix4Xd track(4, samples);
+  FlownTrack track{Eigen::Matrix4Xd(4, samples), Eigen::VectorXd(samples)};
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
   for (int k = 0; k < samples; ++k) {
-    track.col(k) << position_m, speed * direction(course_rad);
+    track.states.col(k) << position_m, speed * direction(course_rad);
+    track.since_manoeuvre_s[k] = programme.since_manoeuvre_s(k * period_s);
     for (int i = 0; i < sub_steps; ++i) {
-      const double half_turn_rad = 0.5 * h * programme.rate_radps(k * period_s + (i + 0.5) * h);
+      const Rates rates = programme.rates(k * period_s + (i + 0.5) * h);
+      const double half_turn_rad = 0.5 * h * rates.turn_radps;
+      const double next_speed = rates.acceleration_mps2 == 0.0
+                                    ? speed
+                                    : std::clamp(speed + h * rates.acceleration_mps2, std::min(speed, lowest_speed_mps),
+                                                 std::max(speed, highest_speed_mps));
       // The chord of an arc points along its middle.
       const double chord = std::abs(half_turn_rad) < 1e-8 ? 1.0 : std::sin(half_turn_rad) / half_turn_rad;
-      position_m += speed * h * chord * direction(course_rad + half_turn_rad);
+      position_m += 0.5 * (speed + next_speed) * h * chord * direction(course_rad + half_turn_rad);
       course_rad += 2.0 * half_turn_rad;
+      speed = next_speed;
     }
   }
   return track;

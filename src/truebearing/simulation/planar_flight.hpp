@@ -1,24 +1,40 @@
-// A flight in the East-North plane at constant speed: straight legs and turns in alternation, the turn rate rising and
-// falling linearly at both ends of a turn (roll-in). Positions follow exact arcs over sub-steps of at most .1 s.
+// A flight in the East-North plane: straight legs and manoeuvres in alternation. A manoeuvre is a turn at constant
+// speed or an acceleration along the track; its rate rises and falls linearly at both ends (roll-in). Positions follow
+// exact arcs over sub-steps of at most .1 s.
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "truebearing/core/random.hpp"
 #include "truebearing/simulation/distribution.hpp"
 
 namespace truebearing {
 
+/// What a target flew, sample by sample.
+struct FlownTrack {
+  Eigen::Matrix4Xd states;            ///< columns [east_m, north_m, east_mps, north_mps]
+  Eigen::VectorXd since_manoeuvre_s;  ///< time since a manoeuvre was under way: 0 in one, infinity before the first
+};
+
 struct PlanarFlight {
-  Distribution speed_mps = 100.0;      ///< drawn once per flight
-  Distribution leg_s = 60.0;           ///< drawn for each leg; the flight begins at a random point of its first
+  Distribution speed_mps = 100.0;  ///< drawn once per flight; constant but for accelerations
+  /// Before the first manoeuvre; where absent, the flight begins at a random point of its first leg.
+  std::optional<Distribution> first_leg_s;
+  Distribution leg_s = 60.0;           ///< drawn for each leg
   Distribution turn_s = 60.0;          ///< drawn for each turn, roll-in included
   Distribution turn_rate_degps = 3.0;  ///< magnitude, drawn for each turn; the side is random
   Distribution roll_in_s = 3.0;        ///< drawn once per flight
 
-  /// Columns: [east_m, north_m, east_mps, north_mps] at 0, period, ..., (samples - 1) period, from the origin on a
-  /// random course.
-  Eigen::Matrix4Xd fly(double period_s, int samples, RandomStream& stream) const;
+  double acceleration_share = 0.0;       ///< probability that a manoeuvre is an acceleration along the track
+  Distribution acceleration_s = 10.0;    ///< drawn for each acceleration
+  Distribution acceleration_mps2 = 1.0;  ///< magnitude, drawn for each acceleration; the sign is random
+  double lowest_speed_mps = 0.0;         ///< an acceleration ends at these speeds
+  double highest_speed_mps = 1e9;
+  double quiet_share = 0.0;  ///< probability that a flight has no manoeuvre
+
+  /// At 0, period, ..., (samples - 1) period, from the origin on a random course.
+  FlownTrack fly(double period_s, int samples, RandomStream& stream) const;
 };
 
 }  // namespace truebearing

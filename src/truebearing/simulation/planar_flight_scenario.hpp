@@ -1,6 +1,8 @@
 // A flight in the plane, seen from a site: as ground range from the site (output "range": line space, range and its
-// rate) or as East and North from the site (output "plane"). The site stands off a random point of the track, square to
-// the velocity there, at the distance drawn; another part of the track may pass nearer.
+// rate), as East and North from the site (output "plane"), or as range and bearing from it (output "range_bearing").
+// The site is placed by one of two rules: [site] closest_m puts it off a random point of the track, square to the
+// velocity there, at the distance drawn (another part of the track may pass nearer); [site] range_m puts it at that
+// range and a uniform bearing from the target's place at step at_step. Without [site] it is where the flight begins.
 //
 // With [jitter] the true and the measured position are those that a recorder would have kept, since recorded tracks are
 // scored against recorded positions. The true velocity, and with it the range rate, is that of the flight itself.
@@ -9,30 +11,35 @@
 #include <memory>
 #include <optional>
 #include <utility>
+#include <variant>
 
 #include "truebearing/simulation/planar_flight.hpp"
+#include "truebearing/simulation/planar_sensor.hpp"
 #include "truebearing/simulation/recorder_jitter.hpp"
 #include "truebearing/simulation/scenario.hpp"
 
 namespace truebearing {
 
-struct SitePlacement {
+struct SiteBesideTrack {
   Distribution closest_m = 0.0;
   double overflight_share = 0.0;  ///< probability that the distance is drawn from overflight_m instead
   Distribution overflight_m = 0.0;
 };
+struct SiteAtRange {
+  Distribution range_m = 10000.0;
+  int at_step = 1;  ///< counted from 1
+};
+struct SiteAtStart {};
 
 struct PlanarFlightParameters {
-  enum class Output { range, plane };
-
-  Output output = Output::range;
   double period_s = 1.0;
   int steps = 1;
-  PlanarFlight flight;                   ///< [flight]
-  SitePlacement site;                    ///< [site]
-  std::optional<RecorderJitter> jitter;  ///< [jitter]
-  Distribution sigma_m = 1.0;            ///< [sensor] position_sigma_m, of the range or per axis
-  bool reported = false;                 ///< [sensor] does a measurement carry its sigma?
+  PlanarFlight flight;                                           ///< [flight]
+  std::variant<SiteAtStart, SiteBesideTrack, SiteAtRange> site;  ///< [site]
+  std::optional<RecorderJitter> jitter;                          ///< [jitter]
+  PlanarSensor sensor;                                           ///< [sensor]
+  /// Where given, steps are told apart for the report: "quiet" longer than this after a manoeuvre, else "manoeuvre".
+  std::optional<double> quiet_after_s;
 };
 
 class PlanarFlightScenario final : public Scenario {

@@ -7,6 +7,7 @@
 
 #include "truebearing/simulation/line_scenario.hpp"
 #include "truebearing/simulation/planar_flight_scenario.hpp"
+#include "truebearing/simulation/planar_legs_scenario.hpp"
 
 namespace truebearing {
 namespace {
@@ -16,7 +17,8 @@ struct ScenarioKind {
   std::unique_ptr<Scenario> (*read)(TableReader&);
 };
 constexpr std::array kKinds{ScenarioKind{"line", read_line_scenario},
-                            ScenarioKind{"planar_flight", read_planar_flight_scenario}};
+                            ScenarioKind{"planar_flight", read_planar_flight_scenario},
+                            ScenarioKind{"planar_legs", read_planar_legs_scenario}};
 
 }  // namespace
 

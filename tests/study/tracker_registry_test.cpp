@@ -62,6 +62,114 @@ measurement = { model = "position", sigma_m = 150.0 }
 start = { kind = "two_point" }
 )";
 
+const std::string kPlane = R"(
+space = "plane"
+motion = { model = "constant_velocity", noise = "discrete", sigma_a_mps2 = 5.0 }
+measurement = { model = "position", sigma_m = 100.0 }
+start = { kind = "two_point" }
+)";
+const std::string kPlaneMotion = "motion = { model = \"constant_velocity\", noise = \"discrete\", sigma_a_mps2 = 5.0 }";
+
+// A few steps of a target that flies East at 100 m/s; how far off the last estimate is.
+double last_error(Tracker& tracker, bool polar) {
+  double error = 1e9;
+  for (int k = 1; k <= 20; ++k) {
+    const Eigen::Vector2d position(1000.0 + 100.0 * k, 5000.0);
+    Measurement measurement;
+    measurement.time_s = k;
+    measurement.z = position;
+    if (polar) measurement.z << position.norm(), std::atan2(position.x(), position.y());
+    for (const StepRecord& record : tracker.step(measurement)) {
+      EXPECT_EQ(record.x.size(), 4);
+      EXPECT_EQ(record.P.rows(), 4);
+      error = (record.x - Eigen::Vector4d(position.x(), position.y(), 100.0, 0.0)).norm();
+    }
+  }
+  return error;
+}
+
+// Sigma points spread in the turn rate fall short of a straight course, so not to the metre.
+TEST(PlaneMakers, EveryMotionAndSensorTracks) {
+  constexpr double kNearby = 10.0;
+  const std::string longer = "start = { kind = \"two_point\", rest_sigma = 0.01 }";
+  const std::vector<std::pair<std::string, std::string>> motions{
+      {kPlaneMotion, "start = { kind = \"two_point\" }"},
+      {"motion = { model = \"coordinated_turn\", turn_rate_degps = 0.0, noise = \"continuous\", q_m2ps3 = 5.0 }",
+       "start = { kind = \"one_point\", velocity_sigma_mps = 300.0 }"},
+      {"motion = { model = \"constant_acceleration\", noise = \"continuous\", q_m2ps5 = 1.0 }", longer},
+      {"motion = { model = \"constant_acceleration\", noise = \"discrete\", sigma_mps2 = 1.0 }", longer},
+      {"motion = { model = \"singer\", sigma_a_mps2 = 3.0, time_constant_s = 20.0 }", longer},
+      {"motion = { model = \"turning_target\", turn_rate_noise_degps2 = 0.5, noise = \"discrete\", sigma_a_mps2 = 2.0 }",
+       longer}};
+  const std::string polar = "measurement = { model = \"converted_range_bearing\", range_sigma_m = 50.0, bearing_sigma_deg = 0.3 }";
+  for (const auto& [motion, start] : motions)
+    for (const char* kind : {"kalman", "unscented"}) {
+      const std::string text = replaced(replaced(kPlane, kPlaneMotion, motion), "start = { kind = \"two_point\" }", start);
+      EXPECT_LT(last_error(*make(text, kind), false), kNearby) << kind << text;
+      const std::string by_radar = replaced(text, "measurement = { model = \"position\", sigma_m = 100.0 }", polar);
+      EXPECT_LT(last_error(*make(by_radar, kind), true), kNearby) << kind << by_radar;
+    }
+  const std::string raw = replaced(replaced(kPlane, "measurement = { model = \"position\", sigma_m = 100.0 }",
+                                            "measurement = { model = \"range_bearing\", range_sigma_m = 50.0, "
+                                            "bearing_sigma_deg = 0.3 }"),
+                                   "start = { kind = \"two_point\" }",
+                                   "start = { kind = \"prior\", x = [1000.0, 5000.0, 90.0, 5.0], variance = [1e4, 1e4, 1e4, 1e4] }");
+  for (const char* kind : {"kalman", "unscented"}) EXPECT_LT(last_error(*make(raw, kind), true), 10.0) << kind;
+  EXPECT_THAT(error_message([&] { make(replaced(raw, "kind = \"prior\", x = [1000.0, 5000.0, 90.0, 5.0], variance = [1e4, 1e4, 1e4, 1e4]",
+                                                "kind = \"two_point\""), "kalman"); }),
+              HasSubstr("converted_range_bearing"));
+}
+
+TEST(PlaneMakers, MultipleModelsOfOneAndOfUnequalStates) {
+  const std::string head = R"(
+space = "plane"
+measurement = { model = "position", sigma_m = 100.0 }
+transition = { leave_first = 0.05, leave_other = 0.1, to_first = 0.7, period_s = 1.0 }
+)";
+  const std::string two_point = "start = { kind = \"two_point\" }\n", longer = "start = { kind = \"two_point\", rest_sigma = 0.01 }\n";
+  const std::string quiet = "{ model = \"constant_velocity\", noise = \"discrete\", sigma_a_mps2 = 1.0 }";
+  const std::string turns = "{ model = \"coordinated_turn\", turn_rates_degps = [-3.0, 3.0], noise = \"discrete\", sigma_a_mps2 = 2.0 }";
+  const std::string lively = "{ model = \"constant_acceleration\", noise = \"continuous\", q_m2ps5 = 1.0 }";
+  const std::string turning = "{ model = \"turning_target\", turn_rate_noise_degps2 = 0.5, noise = \"discrete\", sigma_a_mps2 = 2.0 }";
+  const auto modes = [](const std::string& a, const std::string& b) { return "modes = [" + a + ", " + b + "]\n"; };
+  EXPECT_LT(last_error(*make(head + two_point + modes(quiet, turns), "imm"), false), 5.0);
+  const std::string two = replaced(head, "to_first = 0.7, ", "");
+  EXPECT_LT(last_error(*make(two + longer + modes(quiet, lively), "imm"), false), 5.0);
+  EXPECT_LT(last_error(*make(two + longer + modes(quiet, turning), "imm"), false), 5.0);
+  EXPECT_TRUE(make(head + two_point + modes(quiet, turns), "imm")->blocks().mode_probabilities);
+  EXPECT_THAT(error_message([&] { make(two + longer + modes(lively, turning), "imm"); }), HasSubstr("one of the two"));
+  EXPECT_THAT(error_message([&] { make(head + two_point + "modes = [" + quiet + "]\n", "imm"); }), HasSubstr("2 to 8"));
+  EXPECT_THAT(error_message([&] {
+                make(replaced(head, "leave_first = 0.05, leave_other = 0.1, to_first = 0.7", "matrix = [0.9, 0.1, 0.3, 0.6]") +
+                         two_point + modes(quiet, quiet), "imm");
+              }),
+              HasSubstr("row 2"));
+}
+
+// x + beta (z - x): the published estimate alone, with the covariance that belongs to it.
+TEST(PlaneMakers, OutputPullMovesThePublishedPositionOnly) {
+  const auto plain = make(kPlane, "kalman"), pulled = make(kPlane + "output_pull = 0.4\n", "kalman");
+  RandomStream random({.seed = 11}, StreamId::test);
+  for (int k = 1; k <= 30; ++k) {
+    Measurement measurement;
+    measurement.time_s = k;
+    measurement.z = Eigen::Vector2d(100.0 * k + 100.0 * random.normal(), 100.0 * random.normal());
+    const auto a = plain->step(measurement), b = pulled->step(measurement);
+    if (k < 3) continue;
+    const Eigen::Vector2d expected = a[0].x.head<2>() + 0.4 * (measurement.z - a[0].x.head<2>());
+    EXPECT_LT((b[0].x.head<2>() - expected).norm(), 1e-9);
+    EXPECT_EQ(b[0].x.tail<2>(), a[0].x.tail<2>());
+    EXPECT_EQ(b[0].innovation->nu, a[0].innovation->nu) << "the filter goes on without it";
+    // Joseph's form for the gain that was really used.
+    const Eigen::Matrix<double, 2, 4> H = Eigen::Matrix<double, 2, 4>::Identity();
+    Eigen::Matrix<double, 4, 2> K = *a[0].gain;
+    K.topRows<2>() += 0.4 * (Eigen::Matrix2d::Identity() - H * K);
+    const Eigen::Matrix4d A = Eigen::Matrix4d::Identity() - K * H, predicted = a[0].prediction->P;
+    const Eigen::Matrix4d P = A * predicted * A.transpose() + 1e4 * K * K.transpose();
+    EXPECT_LT((b[0].P - P).norm(), 1e-9 * P.norm());
+  }
+}
+
 TEST(KalmanMaker, MakesEveryFormNoiseAndSpace) {
   for (const char* form : {"joseph", "square_root", "conventional"})
     for (const char* noise : {"noise = \"discrete\", sigma_a_mps2 = 1.5", "noise = \"continuous\", q_m2ps3 = 1.5",

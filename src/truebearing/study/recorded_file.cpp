@@ -41,6 +41,7 @@ RecordedSpec read_recorded_spec(TableReader table) {
     spec.sensor.sigma_m = table.number("position_sigma_m", kPositive);
   }
   spec.track.max_speed_mps = table.number_or("max_speed_mps", spec.track.max_speed_mps, kPositive);
+  spec.track.recorded_velocity = table.choice_or("velocity", {"slope", "recorded"}, "slope") == "recorded";
   spec.track.min_speed_mps = table.number_or("min_speed_mps", spec.track.min_speed_mps, kNonNegative);
   spec.track.max_gap_periods = table.number_or("max_gap_periods", spec.track.max_gap_periods, {1.0, 1e300});
   table.finish();

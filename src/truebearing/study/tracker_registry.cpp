@@ -14,10 +14,8 @@ namespace {
 struct Registry {
   std::mutex mutex;
   std::map<std::string, TrackerMaker> makers{
-      {"kalman", make_kalman_tracker},
-      {"kalman_bank", make_kalman_bank},
-      {"raw", make_raw_tracker},
-      {"recorded", make_recorded_tracker},
+      {"kalman", make_kalman_tracker},      {"kalman_bank", make_kalman_bank}, {"unscented", make_unscented_tracker},
+      {"imm", make_multiple_model_tracker}, {"raw", make_raw_tracker},         {"recorded", make_recorded_tracker},
   };
 };
 

@@ -9,6 +9,7 @@
 #include <utility>
 #include <variant>
 
+#include "truebearing/measurement/longer_state.hpp"
 #include "truebearing/tracker/gate.hpp"
 #include "truebearing/tracker/start.hpp"
 #include "truebearing/tracker/stream_guard.hpp"
@@ -21,16 +22,22 @@ struct FilterTrackerOptions {
   /// Without a usable measurement for longer than this, the target is lost: its covariance stops growing, and
   /// the next usable measurement starts a new track.
   double lost_after_s = std::numeric_limits<double>::infinity();
+  /// Jitter-aware output, in [0, 1]: the published position is moved by this share of the way to the measurement,
+  /// x + beta (z - x), for truth that follows what was recorded rather than what was flown. The filter itself goes on
+  /// without it.
+  double output_pull = 0.0;
 };
 
-/// Sensor: `Sensor::Model model(const Measurement&) const` makes the measurement model of the step.
+/// Sensor: `Sensor::Model model(const Measurement&) const` makes the measurement model of the step, and
+/// `Vector value(const Measurement&) const` what that model calls z. A filter of more components than `space` has is
+/// published without the last of them.
 template <typename Filter, typename Motion, typename Sensor>
 class FilterTracker final : public Tracker {
  public:
   static constexpr int kStates = Motion::kStates;
   static constexpr int kMeasurements = Sensor::Model::kMeasurements;
   using Prior = PriorStart<kStates>;
-  using Start = std::variant<Prior, TwoPointStart>;
+  using Start = std::variant<Prior, TwoPointStart, OnePointStart>;
 
   FilterTracker(const StateSpace& space, Motion motion, Sensor sensor, Start start, FilterTrackerOptions options = {})
       : space_(&space),
@@ -78,39 +85,70 @@ class FilterTracker final : public Tracker {
   }
 
   const StateSpace& space() const override { return *space_; }
-  RecordBlocks blocks() const override { return {.prediction = true, .innovation = true, .gain = true}; }
+  RecordBlocks blocks() const override {
+    return {.prediction = true,
+            .innovation = true,
+            .gain = true,
+            .mode_probabilities = kMultipleModel,
+            .measures_position = Sensor::kMeasuresPosition};
+  }
   TrackerCounts counts() const override { return guard_.counts; }
 
  private:
   using Vector = Eigen::Matrix<double, kMeasurements, 1>;
+  using State = Eigen::Matrix<double, kStates, 1>;
+  using Covariance = Eigen::Matrix<double, kStates, kStates>;
+  static constexpr bool kMultipleModel = requires(const Filter& filter) { filter.mode_probabilities(); };
+
+  void begin(const State& x, const Covariance& P) {
+    if constexpr (kMultipleModel)
+      filter_.emplace(x, P, motion_);
+    else
+      filter_.emplace(x, P);
+  }
 
   void restart(double time_s) {
     ++record_.track;
     pending_.reset();
     filter_.reset();
-    if (const auto* prior = std::get_if<Prior>(&start_)) filter_.emplace(prior->x, prior->P);
+    if (const auto* prior = std::get_if<Prior>(&start_)) begin(prior->x, prior->P);
     filter_time_s_ = time_s;
   }
 
   // The first of two measurements waits; the second makes the state. Where both are of one time, the later one waits.
   std::span<const StepRecord> start_from(const Measurement& measurement) {
-    if constexpr (2 * kMeasurements == kStates) {
-      if (pending_ && measurement.time_s > pending_->time_s) {
+    if constexpr (2 * kMeasurements <= kStates) {
+      const auto R = sensor_.model(measurement).R();
+      if (const auto* one_point = std::get_if<OnePointStart>(&start_)) {
+        Eigen::Matrix<double, 2 * kMeasurements, 1> x = Eigen::Matrix<double, 2 * kMeasurements, 1>::Zero();
+        x.template head<kMeasurements>() = sensor_.value(measurement);
+        const double variance = one_point->velocity_sigma_mps * one_point->velocity_sigma_mps;
+        Eigen::Matrix<double, 2 * kMeasurements, 2 * kMeasurements> P =
+            variance * Eigen::Matrix<double, 2 * kMeasurements, 2 * kMeasurements>::Identity();
+        P.template topLeftCorner<kMeasurements, kMeasurements>() = R;
+        return begin_from(measurement, lengthened<kStates>(x, P, one_point->rest_sigma));
+      }
+      const auto* two_point = std::get_if<TwoPointStart>(&start_);
+      if (two_point && pending_ && measurement.time_s > pending_->time_s) {
         const auto start =
-            two_point_state<kMeasurements>(Vector(pending_->z), sensor_.model(*pending_).R(), Vector(measurement.z),
-                                           sensor_.model(measurement).R(), measurement.time_s - pending_->time_s);
-        filter_.emplace(start.x, start.P);
-        pending_.reset();
-        filter_time_s_ = measurement.time_s;
-        clear_blocks();
-        record_.time_s = measurement.time_s;
-        record_.sensor = measurement.sensor;
-        record_.status = StepStatus::ok;
-        return publish(*filter_);
+            two_point_state<kMeasurements>(sensor_.value(*pending_), sensor_.model(*pending_).R(),
+                                           sensor_.value(measurement), R, measurement.time_s - pending_->time_s);
+        return begin_from(measurement, lengthened<kStates>(start.x, start.P, two_point->rest_sigma));
       }
     }
     pending_ = measurement;
     return {};
+  }
+
+  std::span<const StepRecord> begin_from(const Measurement& measurement, const Prior& start) {
+    begin(start.x, start.P);
+    pending_.reset();
+    filter_time_s_ = measurement.time_s;
+    clear_blocks();
+    record_.time_s = measurement.time_s;
+    record_.sensor = measurement.sensor;
+    record_.status = StepStatus::ok;
+    return publish(*filter_);
   }
 
   StepStatus predict(Filter& filter, double dt_s) {
@@ -119,25 +157,37 @@ class FilterTracker final : public Tracker {
       ++guard_.counts.failed;
       return StepStatus::failed;
     }
-    record_.prediction = Prediction{filter.x(), filter.P()};
+    record_.prediction = Prediction{published(filter.x()), published(filter.P())};
     return StepStatus::ok;
+  }
+
+  // A model of a shorter state measures the beginning of the filter's. A multiple-model filter sees to that itself.
+  template <typename Model>
+  static auto use(Filter& filter, const Model& model, const Vector& z) {
+    if constexpr (kMultipleModel)
+      return filter.update(model, z);
+    else
+      return filter.update(on_state<kStates>(model), z);
   }
 
   // Leaves `filter` at the prediction where the measurement is not used.
   StepStatus update(Filter& filter, const Measurement& measurement) {
     Filter updated = filter;
-    const auto update = updated.update(sensor_.model(measurement), Vector(measurement.z));
+    const auto model = sensor_.model(measurement);
+    const Vector z = sensor_.value(measurement);
+    const auto update = use(updated, model, z);
     if (update.status == StepStatus::failed || !std::isfinite(update.nis)) {  // so far off that its square overflows
       ++guard_.counts.failed;
       return StepStatus::failed;
     }
-    record_.innovation = Innovation{measurement.z, update.nu, update.S, update.nis};
+    record_.innovation = Innovation{z, update.nu, update.S, update.nis};
     if (!gate_.passes(update.nis)) {
       ++guard_.counts.gated;
       return StepStatus::rejected;
     }
-    record_.gain.emplace(update.K);
+    record_.gain.emplace(update.K.topRows(space_->size()));
     filter = updated;
+    if (options_.output_pull > 0.0) pull(model, z, update, filter);
     return StepStatus::ok;
   }
 
@@ -149,11 +199,31 @@ class FilterTracker final : public Tracker {
     return {&record_, 1};
   }
 
+  // With the gain K' = K + beta G (I - H K), G = [I; 0], in place of K: the covariance grows by (K' - K) S (K' - K)'.
+  template <typename Model, typename UpdateType>
+  void pull(const Model& model, const Vector& z, const UpdateType& update, const Filter& filter) {
+    constexpr int n = Model::kStates;
+    const Eigen::Matrix<double, n, 1> x = filter.x().template head<n>();
+    const Eigen::Matrix<double, kMeasurements, kMeasurements> left =
+        decltype(update.S)::Identity() - model.H(x) * update.K.template topRows<n>();
+    moved_ = options_.output_pull * model.residual(z, model.h(x));
+    spread_ = options_.output_pull * options_.output_pull * left * update.S * left.transpose();
+  }
+
   std::span<const StepRecord> publish(const Filter& filter) {
-    record_.x = filter.x();
-    record_.P = filter.P();
+    record_.x = published(filter.x());
+    record_.P = published(filter.P());
+    if (options_.output_pull > 0.0 && record_.gain) {
+      record_.x.template head<kMeasurements>() += moved_;
+      record_.P.template topLeftCorner<kMeasurements, kMeasurements>() += spread_;
+    }
+    if constexpr (kMultipleModel) record_.mode_probabilities = filter.mode_probabilities();
     return {&record_, 1};
   }
+
+  // Without the components that the space does not have.
+  BoundedVector published(const State& x) const { return x.head(space_->size()); }
+  BoundedMatrix published(const Covariance& P) const { return P.topLeftCorner(space_->size(), space_->size()); }
 
   void clear_blocks() {
     record_.prediction.reset();
@@ -173,6 +243,9 @@ class FilterTracker final : public Tracker {
   double filter_time_s_ = 0.0;  // of the last measurement that was used
   std::optional<Measurement> pending_;
   StepRecord record_;
+  Vector moved_ = Vector::Zero();  // of the last step's output_pull
+  Eigen::Matrix<double, kMeasurements, kMeasurements> spread_ =
+      Eigen::Matrix<double, kMeasurements, kMeasurements>::Zero();
 };
 
 }  // namespace truebearing

@@ -12,6 +12,8 @@ template <int D>
 struct PositionSensor {
   using Model = Position<D>;
   using Sigma = Eigen::Matrix<double, D, 1>;
+  static constexpr bool kMeasuresPosition = true;
+
   Sigma sigma_m = Sigma::Ones();
   double sigma_factor = 1.0;
 
@@ -19,6 +21,7 @@ struct PositionSensor {
     return Model{measurement.sigma.size() == D ? Sigma(sigma_factor * measurement.sigma)
                                                : Sigma(sigma_factor * sigma_m)};
   }
+  Sigma value(const Measurement& measurement) const { return measurement.z; }
 };
 
 }  // namespace truebearing

@@ -25,7 +25,10 @@ class RecordedTracker final : public Tracker {
   void reset() override { next_ = 0; }
   std::unique_ptr<Tracker> clone() const override;
   const StateSpace& space() const override { return *space_; }
-  RecordBlocks blocks() const override { return {.innovation = innovation_}; }
+  /// In the plane z_1 and z_2 of a step log are the measured position.
+  RecordBlocks blocks() const override {
+    return {.innovation = innovation_, .measures_position = innovation_ && *space_ == plane_space()};
+  }
 
  private:
   const StateSpace* space_;

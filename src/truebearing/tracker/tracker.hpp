@@ -24,6 +24,7 @@ struct RecordBlocks {
   bool innovation = false;
   bool gain = false;
   bool mode_probabilities = false;
+  bool measures_position = false;  ///< the innovation's z is the position, the first half of the state
 };
 
 class Tracker {

@@ -25,6 +25,12 @@ Eigen::VectorXd FuzzyTrainingData::weights() const {
   return output_weights.size() > 0 ? output_weights : Eigen::VectorXd::Ones(labels.cols());
 }
 
+Eigen::VectorXd FuzzyTrainingData::output_signs() const {
+  if (output_parity.empty()) return Eigen::VectorXd::Constant(labels.cols(), -1.0);
+  return Eigen::Map<const Eigen::VectorXi>(output_parity.data(), static_cast<Eigen::Index>(output_parity.size()))
+      .cast<double>();
+}
+
 void validate(const FuzzyTrainingData& data, int rules) {
   const auto refuse = [](const std::string& found, const std::string& valid) {
     throw InputError("training data", found, valid);
@@ -59,6 +65,15 @@ void validate(const FuzzyTrainingData& data, int rules) {
   for (const int parity : data.parity) {
     if (parity != 1 && parity != -1) refuse("parity " + std::to_string(parity), "+1 or -1");
   }
+  for (const int parity : data.output_parity) {
+    if (parity != 1 && parity != -1) refuse("output parity " + std::to_string(parity), "+1 or -1");
+  }
+  if (!data.output_parity.empty() && static_cast<Eigen::Index>(data.output_parity.size()) != outputs) {
+    refuse(std::to_string(data.output_parity.size()) + " output parities", "one per output, or none");
+  }
+  if (data.paired_rules && (!data.mirrored() || rules % 2 != 0)) {
+    refuse("paired rules that are odd in number or have no parities", "an even number, and one parity per feature");
+  }
   const Eigen::VectorXd weights = data.weights();
   if (weights.size() != outputs || !weights.allFinite() || !(weights.array() > 0.0).all()) {
     refuse("output weights that are not positive or not one per output", "positive numbers");
@@ -91,7 +106,8 @@ FuzzyNetwork::Parameters normalisation(const FuzzyTrainingData& data, double inp
 NormalisedRows normalised_rows(const FuzzyTrainingData& data, const FuzzyNetwork::Parameters& normalisation,
                                std::span<const Eigen::Index> rows) {
   const Eigen::Index count = static_cast<Eigen::Index>(rows.size());
-  const Eigen::Index total = data.mirrored() ? 2 * count : count;
+  const Eigen::Index total = data.mirrored_rows() ? 2 * count : count;
+  const Eigen::VectorXd signs = data.output_signs();
   NormalisedRows normalised{Eigen::MatrixXd(total, data.features.cols()), Eigen::MatrixXd(total, data.labels.cols())};
   const auto fill = [&](Eigen::Index first, bool mirror) {
     for (Eigen::Index i = 0; i < data.features.cols(); ++i) {
@@ -103,14 +119,14 @@ NormalisedRows normalised_rows(const FuzzyTrainingData& data, const FuzzyNetwork
       }
     }
     for (Eigen::Index o = 0; o < data.labels.cols(); ++o) {
-      const double factor = (mirror ? -1.0 : 1.0) / normalisation.output_scale[o];
+      const double factor = (mirror ? signs[o] : 1.0) / normalisation.output_scale[o];
       for (Eigen::Index n = 0; n < count; ++n) {
         normalised.targets(first + n, o) = factor * data.labels(rows[static_cast<std::size_t>(n)], o);
       }
     }
   };
   fill(0, false);
-  if (data.mirrored()) fill(count, true);
+  if (data.mirrored_rows()) fill(count, true);
   return normalised;
 }
 

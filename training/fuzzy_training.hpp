@@ -1,8 +1,8 @@
 // What the trainers of the fuzzy network share: the training data, its normalisation and its mirror image.
 //
 // N rows, d features, p outputs, M rules. Features X (N x d) and teacher signal Y (N x p) are raw; the network sees
-// u = clip((x - mean) / scale) and learns y / output_scale. With mirror symmetry every row stands for two: features of
-// parity -1 and all outputs change sign (a mirrored target needs the mirrored correction).
+// u = clip((x - mean) / scale) and learns y / output_scale. With mirror symmetry every row stands for two: features and
+// outputs of parity -1 change sign (a mirrored target needs the mirrored correction).
 #pragma once
 
 #include <Eigen/Core>
@@ -21,10 +21,16 @@ struct FuzzyTrainingData {
   Eigen::MatrixXd labels;          ///< Y (N x p), the teacher signal
   std::vector<int> parity;         ///< (d), +1 even or -1 odd; empty: no mirror symmetry
   Eigen::VectorXd output_weights;  ///< (p), > 0, of the squared normalised residuals; empty: all 1
+  std::vector<int> output_parity;  ///< (p), as parity; empty: all odd
+  /// With mirror symmetry: rules in pairs that mirror each other, in place of the rows' mirror images.
+  bool paired_rules = false;
 
   Eigen::Index rows() const { return features.rows(); }
   bool mirrored() const { return !parity.empty(); }
+  bool mirrored_rows() const { return mirrored() && !paired_rules; }
   Eigen::VectorXd weights() const;  ///< output_weights, or ones
+  /// Of the outputs as numbers (p): output_parity, or -1 for all.
+  Eigen::VectorXd output_signs() const;
 };
 
 struct TrainedFuzzyNetwork {

@@ -56,10 +56,29 @@ void NormalEquations::add(const Eigen::Ref<const Eigen::MatrixXd>& phi, const Ei
   targets_squared_ += T.colwise().squaredNorm().transpose();
 }
 
-Eigen::MatrixXd NormalEquations::consequents(double lambda) const {
-  Eigen::MatrixXd A = strengths_squared_;
-  A.diagonal().array() += lambda * rows_ / static_cast<double>(A.rows());
-  return A.llt().solve(strengths_by_targets_);
+Eigen::MatrixXd NormalEquations::consequents(double lambda, const Eigen::VectorXd& pair_signs) const {
+  const Eigen::Index M = strengths_squared_.rows();
+  const double ridge = lambda * rows_ / static_cast<double>(M);
+  if (pair_signs.size() == 0) {
+    Eigen::MatrixXd A = strengths_squared_;
+    A.diagonal().array() += ridge;
+    return A.llt().solve(strengths_by_targets_);
+  }
+  // The strengths of a pair, added with the output's sign, are one column: half the unknowns, one system per sign.
+  const Eigen::Index half = M / 2;
+  const Eigen::MatrixXd A = strengths_squared_.selfadjointView<Eigen::Lower>();
+  Eigen::MatrixXd W(M, pair_signs.size());
+  for (Eigen::Index o = 0; o < pair_signs.size(); ++o) {
+    const double sign = pair_signs[o];
+    Eigen::MatrixXd paired = A.topLeftCorner(half, half) + A.bottomRightCorner(half, half) +
+                             sign * (A.topRightCorner(half, half) + A.bottomLeftCorner(half, half));
+    paired.diagonal().array() += 2.0 * ridge;
+    const Eigen::VectorXd targets =
+        strengths_by_targets_.col(o).head(half) + sign * strengths_by_targets_.col(o).tail(half);
+    W.col(o).head(half) = paired.llt().solve(targets);
+    W.col(o).tail(half) = sign * W.col(o).head(half);
+  }
+  return W;
 }
 
 Eigen::VectorXd NormalEquations::usage() const {
@@ -97,7 +116,7 @@ double ProjectedCost::evaluate(const Eigen::MatrixXd& U, const Eigen::MatrixXd& 
     block_strengths(V.middleRows(first, count), coefficients, phi);
     equations.add(phi, T.middleRows(first, count));
   }
-  const Eigen::MatrixXd W = equations.consequents(lambda_);
+  const Eigen::MatrixXd W = equations.consequents(lambda_, pair_signs_);
 
   // The gradient by the exponents e_nj is G = 2/n phi_nj (r.y_n - r.w_j) with r weighted; through V it is V'G.
   double cost = lambda_ / static_cast<double>(rules) * W.colwise().squaredNorm().dot(output_weights_);

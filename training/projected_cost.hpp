@@ -4,6 +4,9 @@
 // As W is optimal, its own change adds nothing to first order: the gradient of J is the partial one at that W.
 //
 // U (n x d) inputs, T (n x p) targets, Phi (n x M) normalised strengths. Internal to the trainers.
+//
+// Rules in mirror pairs: the second half of the M rules mirrors the first, c_(M/2+j) = parity c_j, and its consequents
+// are w_(M/2+j) = sign w_j, output by output.
 #pragma once
 
 #include <Eigen/Core>
@@ -28,8 +31,9 @@ class NormalEquations {
  public:
   NormalEquations(Eigen::Index rules, Eigen::Index outputs);
   void add(const Eigen::Ref<const Eigen::MatrixXd>& phi, const Eigen::Ref<const Eigen::MatrixXd>& T);
-  /// W (M x p) = (Phi'Phi + lambda n/M I)^-1 Phi'T, lambda > 0.
-  Eigen::MatrixXd consequents(double lambda) const;
+  /// W (M x p) = (Phi'Phi + lambda n/M I)^-1 Phi'T, lambda > 0; the best in mirror pairs with the `pair_signs` (p) of
+  /// the outputs where those are given.
+  Eigen::MatrixXd consequents(double lambda, const Eigen::VectorXd& pair_signs = {}) const;
   Eigen::VectorXd usage() const;       ///< (M), mean of phi
   Eigen::MatrixXd local_mean() const;  ///< (M x p), phi-weighted mean of the targets; 0 for a rule that is never used
   /// Of consequents W, per output: 1/n |t_o - Phi w_o|^2 + lambda/M |w_o|^2.
@@ -45,8 +49,9 @@ class NormalEquations {
 
 class ProjectedCost {
  public:
-  ProjectedCost(Eigen::VectorXd output_weights, double lambda)
-      : output_weights_(std::move(output_weights)), lambda_(lambda) {}
+  /// pair_signs (p): the outputs' where rules come in mirror pairs, else empty.
+  ProjectedCost(Eigen::VectorXd output_weights, double lambda, Eigen::VectorXd pair_signs = {})
+      : output_weights_(std::move(output_weights)), lambda_(lambda), pair_signs_(std::move(pair_signs)) {}
 
   struct Gradient {
     Eigen::MatrixXd centres;     ///< (M x d), dJ/dc
@@ -59,6 +64,7 @@ class ProjectedCost {
  private:
   Eigen::VectorXd output_weights_;
   double lambda_;
+  Eigen::VectorXd pair_signs_;
   Eigen::MatrixXd phi_;  // block by block, (kBlockRows x M) each: kept between the two passes over the rows
 };
 

@@ -26,9 +26,11 @@ class RowMaker {
         base_(ensemble_.index(correction.base)),
         reference_(ensemble_.index(correction.reference)),
         source_(ensemble_.index(correction.covariance_of)),
-        extractor_(correction.features, ensemble_.tracker(base_).space(), [&](const std::string& name) {
-          return ensemble_.tracker(name.empty() ? base_ : ensemble_.index(name)).blocks();
-        }) {
+        output_in_sigma_(correction.output_in_sigma),
+        extractor_(correction.features, ensemble_.tracker(base_).space(), correction.frame,
+                   [&](const std::string& name) {
+                     return ensemble_.tracker(name.empty() ? base_ : ensemble_.index(name)).blocks();
+                   }) {
     for (const std::string& name : extractor_.companions()) companions_.push_back(ensemble_.index(name));
     companion_records_.resize(companions_.size());
   }
@@ -49,9 +51,16 @@ class RowMaker {
       const StepRecord* source = ensemble_.record(source_, base.track);
       if (static_cast<int>(step) + 1 < from_step_ || !reference || !source || base.status == StepStatus::failed)
         continue;
-      row.label = recording.truth.front().x[step] - base.x;
-      row.reference = reference->x - base.x;
-      const Eigen::LLT<BoundedMatrix> covariance(source->P), reference_covariance(reference->P);
+      // T into the frame, then 1 / D.
+      const FrameRotation& rotation = extractor_.rotation();
+      BoundedVector scale = BoundedVector::Ones(base.x.size());
+      if (output_in_sigma_) scale = rotation.covariance(base.P).diagonal().cwiseSqrt().cwiseInverse();
+      row.label = scale.cwiseProduct(rotation.vector(recording.truth.front().x[step] - base.x));
+      row.reference = scale.cwiseProduct(rotation.vector(reference->x - base.x));
+      const auto scaled = [&](const BoundedMatrix& P) -> BoundedMatrix {
+        return scale.asDiagonal() * rotation.covariance(P) * scale.asDiagonal();
+      };
+      const Eigen::LLT<BoundedMatrix> covariance(scaled(source->P)), reference_covariance(scaled(reference->P));
       if (!row.features.allFinite() || !row.label.allFinite() || covariance.info() != Eigen::Success ||
           reference_covariance.info() != Eigen::Success)
         continue;
@@ -68,6 +77,7 @@ class RowMaker {
   int base_;
   int reference_;
   int source_;
+  bool output_in_sigma_;
   FeatureExtractor extractor_;
   std::vector<int> companions_;
   std::vector<const StepRecord*> companion_records_;

@@ -14,7 +14,9 @@
 
 namespace truebearing {
 
-/// One row per taught step of a run, run after run. d features, n state components.
+/// One row per taught step of a run, run after run. d features, n state components. Everything but the features is in
+/// the units of the network's output: in the correction's frame, and where the correction says so in standard
+/// deviations of the base there.
 struct TeacherSet {
   std::vector<FeatureSpec> features;
   Eigen::MatrixXd X;          ///< (N x d), features in their units

@@ -3,19 +3,24 @@
 #include <algorithm>
 #include <chrono>
 #include <fmt/format.h>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "training/back_propagation.hpp"
 #include "training/covariance_inflation.hpp"
+#include "training/covariance_moments.hpp"
 #include "training/variable_projection.hpp"
 
 namespace truebearing {
 namespace {
 
-FuzzyTrainingData training_data(const TeacherSet& teacher, bool mirror) {
-  FuzzyTrainingData data{teacher.X, teacher.Y, {}, {}};
-  if (mirror)
-    for (const FeatureSpec& feature : teacher.features) data.parity.push_back(mirror_parity(feature.kind));
+FuzzyTrainingData training_data(const TeacherSet& teacher, const CorrectionSpec& spec, const StateSpace& space) {
+  FuzzyTrainingData data{teacher.X, teacher.Y, {}, {}, {}, false};
+  if (spec.training.mirror == TrainingSpec::Mirror::none) return data;
+  for (const FeatureSpec& feature : teacher.features) data.parity.push_back(mirror_parity(feature, spec.frame, space));
+  for (int i = 0; i < space.size(); ++i) data.output_parity.push_back(component_parity(spec.frame, i));
+  data.paired_rules = spec.training.mirror == TrainingSpec::Mirror::pairs;
   return data;
 }
 
@@ -89,40 +94,71 @@ Eigen::VectorXd disagreements(const TeacherSet& teacher, const Eigen::MatrixXd& 
     const BoundedMatrix reference = teacher.reference_factors.row(row).reshaped(n, n);
     values[row] =
         disagreement((corrections.row(row) - teacher.reference.row(row)).transpose(),
-                     phi.dot(model.inflation) * source * source.transpose(), reference * reference.transpose());
+                     model.head_covariance(phi, source * source.transpose()), reference * reference.transpose());
   }
   return values;
 }
 
 }  // namespace
 
+// The covariance head, from rows of what the correction will meet.
+void fit_covariance(const TeacherSet& teacher, const Eigen::MatrixXd& corrections, const CorrectionSpec& spec,
+                    CorrectionModel& model) {
+  const Eigen::Index n = teacher.Y.cols();
+  const Eigen::MatrixXd errors = teacher.Y - corrections;
+  if (!spec.covariance_moments) {
+    const Eigen::VectorXd lengths = mahalanobis_lengths(errors, teacher.covariance_factors);
+    model.inflation = covariance_inflation(model.network, teacher.X, lengths.cwiseAbs2() / static_cast<double>(n));
+    return;
+  }
+  // In standard deviations of the covariance's source: the rows of L are as long as those.
+  Eigen::MatrixXd normalised = errors;
+  for (Eigen::Index row = 0; row < errors.rows(); ++row)
+    normalised.row(row).array() /=
+        teacher.covariance_factors.row(row).reshaped(n, n).rowwise().norm().transpose().array();
+  std::vector<int> output_parity;
+  if (spec.training.mirror == TrainingSpec::Mirror::pairs)
+    for (int i = 0; i < static_cast<int>(n); ++i) output_parity.push_back(component_parity(spec.frame, i));
+  model.moments = covariance_moments(model.network, teacher.X, normalised, output_parity);
+}
+
 CorrectionModel train_correction(const Study& study, const std::string& name, const TrainOptions& options,
                                  TrainReport* report) {
   const CorrectionSpec& spec = study.tracker(name).correction.value();
   const Ensemble ensemble = study.make_ensemble(spec.members());
-  const TeacherSet teacher = collect_teacher_set(
-      ensemble, spec, study.scenario(), {options.seed, Role::training, options.threads, options.teacher_progress});
-  const FuzzyTrainingData data = training_data(teacher, spec.training.mirror);
+  const StateSpace& space = ensemble.tracker(ensemble.index(spec.base)).space();
+  const TeacherOptions teacher_options{options.seed, Role::training, options.threads, options.teacher_progress};
+  const std::unique_ptr<Scenario> taught = spec.training.scenario ? load_scenario(*spec.training.scenario) : nullptr;
+  const TeacherSet teacher = collect_teacher_set(ensemble, spec, taught ? *taught : study.scenario(), teacher_options);
+  const FuzzyTrainingData data = training_data(teacher, spec, space);
   const auto begin = std::chrono::steady_clock::now();
   TrainedFuzzyNetwork trained = train_network(data, spec.training, options);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
 
   CorrectionModel model;
-  model.space = &ensemble.tracker(ensemble.index(spec.base)).space();
+  model.space = &space;
   model.base = spec.base;
   model.reference = spec.reference;
   model.covariance_of = spec.covariance_of;
   for (const std::string& member : spec.members()) model.trackers[member] = study.configuration_line(member);
+  model.frame = spec.frame;
+  model.output_in_sigma = spec.output_in_sigma;
   model.features = spec.features;
   model.network = FuzzyNetwork(std::move(trained.parameters));
-  const Eigen::MatrixXd corrections = outputs(teacher, model.network);
   model.kappa = spec.kappa;
-  const Eigen::VectorXd lengths = mahalanobis_lengths(teacher.Y - corrections, teacher.covariance_factors);
-  model.inflation = covariance_inflation(model.network, teacher.X, lengths.cwiseAbs2() / model.space->size());
+  model.referee = spec.referee;
+
+  // Covariance and gate from the wider family, where there is one.
+  std::optional<TeacherSet> wider;
+  if (spec.training.covariance_scenario)
+    wider = collect_teacher_set(ensemble, spec, *load_scenario(*spec.training.covariance_scenario), teacher_options);
+  const TeacherSet& met = wider ? *wider : teacher;
+  const Eigen::MatrixXd corrections = outputs(met, model.network);
+  fit_covariance(met, corrections, spec, model);
   if (spec.gate) {
     const bool trusts_another = spec.reference != spec.base;
-    model.gate =
-        box_gate(data, trusts_another ? disagreements(teacher, corrections, model) : Eigen::VectorXd(), *spec.gate);
+    model.gate = box_gate(training_data(met, spec, space),
+                          trusts_another ? disagreements(met, corrections, model) : Eigen::VectorXd(), *spec.gate);
   }
   model.usage = trained.usage;
   model.local_mean = trained.local_mean;
@@ -131,6 +167,8 @@ CorrectionModel train_correction(const Study& study, const std::string& name, co
                       {"seed", fmt::format("{}", options.seed)},
                       {"training_runs", fmt::format("{}", spec.training.runs)},
                       {"training_rows", fmt::format("{}", teacher.X.rows())}};
+  if (taught) model.provenance["scenario"] = spec.training.scenario->filename().string();
+  if (wider) model.provenance["covariance_scenario"] = spec.training.covariance_scenario->filename().string();
   model.validate();
   if (report) *report = {teacher.X.rows(), trained.cost, elapsed.count()};
   return model;

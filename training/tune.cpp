@@ -98,13 +98,25 @@ std::vector<double> offset(std::vector<double> values, double by) {
   return values;
 }
 
+// What numbers cost; those that make no tracker, a probability above 1 say, are as bad as can be.
+std::optional<TrackerSummary> score_of(const std::vector<double>& logarithms, const TunedTracker& tracker,
+                                       const TuningRuns& runs) {
+  std::unique_ptr<Tracker> made;
+  try {
+    made = tracker.make(logarithms);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+  return runs.score(*made);
+}
+
 // One factor on all numbers that leaves the estimates as they are: choose it by the NEES.
 void fix_common_factor(std::vector<double>& logarithms, const TunedTracker& tracker, const TuningRuns& runs) {
   const TrackerSummary summary = runs.score(*tracker.make(logarithms));
   std::vector<double> scaled = logarithms;
   for (double& logarithm : scaled) logarithm += std::log(summary.nees / summary.dimension);
-  const double change = cost_of(runs.score(*tracker.make(scaled))) - cost_of(summary);
-  if (std::abs(change) < 1e-9) logarithms = scaled;
+  const std::optional<TrackerSummary> after = score_of(scaled, tracker, runs);
+  if (after && std::abs(cost_of(*after) - cost_of(summary)) < 1e-9) logarithms = scaled;
 }
 
 }  // namespace
@@ -116,10 +128,14 @@ TunedValues tune_tracker(const Study& study, const std::string& name, const Tune
   const TunedTracker tracker(study, spec);
   const TuningRuns runs(study, options);
 
+  const auto cost_at = [&](const std::vector<double>& logarithms) {
+    const std::optional<TrackerSummary> summary = score_of(logarithms, tracker, runs);
+    return summary ? cost_of(*summary) : std::numeric_limits<double>::max();
+  };
   int evaluations = 0;
   double best = std::numeric_limits<double>::max();
   std::function<double(const std::vector<double>&)> cost = [&](const std::vector<double>& logarithms) {
-    const double value = cost_of(runs.score(*tracker.make(logarithms)));
+    const double value = cost_at(logarithms);
     best = std::min(best, value);
     if (options.progress)
       options.progress(++evaluations, options.max_evaluations, best);
@@ -127,6 +143,7 @@ TunedValues tune_tracker(const Study& study, const std::string& name, const Tune
       ++evaluations;
     return value;
   };
+  tracker.make(tracker.start());  // the start must be valid
   const double before = cost(tracker.start());
 
   // Two rounds: the second from where the first ended, with a fresh simplex, for those that collapse on the way.

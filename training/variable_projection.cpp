@@ -38,7 +38,7 @@ Eigen::MatrixXd neighbour_widths(const Eigen::MatrixXd& centres, double floor) {
 // At most max_rows rows, mirror images included.
 NormalisedRows draw_rows(const FuzzyTrainingData& data, Eigen::Index max_rows, RandomStream& random,
                          const FuzzyNetwork::Parameters& normalisation) {
-  const Eigen::Index wanted = data.mirrored() ? (max_rows + 1) / 2 : max_rows;
+  const Eigen::Index wanted = data.mirrored_rows() ? (max_rows + 1) / 2 : max_rows;
   return normalised_rows(data, normalisation, stratified_rows(data.rows(), wanted, random));
 }
 
@@ -64,11 +64,58 @@ class Adam {
   Eigen::ArrayXXd square_;
 };
 
+Eigen::VectorXd pair_signs(const FuzzyTrainingData& data) {
+  return data.paired_rules ? data.output_signs() : Eigen::VectorXd();
+}
+
+Eigen::RowVectorXd input_signs(const FuzzyTrainingData& data) {
+  return Eigen::Map<const Eigen::RowVectorXi>(data.parity.data(), static_cast<Eigen::Index>(data.parity.size()))
+      .cast<double>();
+}
+
+// Of rules in mirror pairs, where they begin: the centres of the rows, each taken by whichever of itself and its image
+// has the positive sum of odd inputs, and behind them the centres' images.
+Eigen::MatrixXd paired_centres(const FuzzyTrainingData& data, Eigen::MatrixXd U, int rules, RandomStream& random) {
+  const Eigen::RowVectorXd signs = input_signs(data);
+  const Eigen::RowVectorXd odd = (signs.array() < 0.0).cast<double>();
+  for (Eigen::Index row = 0; row < U.rows(); ++row)
+    if (U.row(row).dot(odd) < 0.0) U.row(row) = U.row(row).cwiseProduct(signs);
+  const Eigen::MatrixXd centres = k_means(U, rules / 2, random);
+  Eigen::MatrixXd paired(rules, U.cols());
+  paired << centres, centres * signs.asDiagonal();
+  return paired;
+}
+
+// The gradient by the parameters of a pair, which are one, on both of its rules.
+void tie(const FuzzyTrainingData& data, ProjectedCost::Gradient& gradient) {
+  const Eigen::RowVectorXd signs = input_signs(data);
+  const Eigen::Index half = gradient.centres.rows() / 2;
+  const Eigen::MatrixXd by_centre =
+      gradient.centres.topRows(half) + gradient.centres.bottomRows(half) * signs.asDiagonal();
+  const Eigen::MatrixXd by_width = gradient.log_widths.topRows(half) + gradient.log_widths.bottomRows(half);
+  gradient.centres << by_centre, by_centre * signs.asDiagonal();
+  gradient.log_widths << by_width, by_width;
+}
+
+// The same for what is told of the rules.
+void tie(const FuzzyTrainingData& data, TrainedFuzzyNetwork& trained) {
+  const Eigen::RowVectorXd signs = data.output_signs().transpose();
+  const Eigen::Index half = trained.usage.size() / 2;
+  for (Eigen::Index j = 0; j < half; ++j) {
+    const double sum = trained.usage[j] + trained.usage[half + j];
+    const double share = sum > 0.0 ? trained.usage[j] / sum : 0.5;
+    trained.local_mean.row(j) =
+        share * trained.local_mean.row(j) + (1.0 - share) * trained.local_mean.row(half + j).cwiseProduct(signs);
+    trained.local_mean.row(half + j) = trained.local_mean.row(j).cwiseProduct(signs);
+    trained.usage[j] = trained.usage[half + j] = 0.5 * sum;
+  }
+}
+
 // Every iteration draws its rows afresh, so that the loop sees all the data at the price of a sample: the rows of one
 // run are alike, and a fixed sample would be learnt by heart.
 void descend(const FuzzyTrainingData& data, const VariableProjectionOptions& options, RandomStream& random,
              const TrainingProgress& progress, FuzzyNetwork::Parameters& parameters) {
-  ProjectedCost projected_cost(data.weights(), options.ridge);
+  ProjectedCost projected_cost(data.weights(), options.ridge, pair_signs(data));
   ProjectedCost::Gradient gradient;
   Eigen::MatrixXd log_widths = parameters.widths.array().log();
   Adam centre_steps(log_widths.rows(), log_widths.cols());
@@ -78,6 +125,7 @@ void descend(const FuzzyTrainingData& data, const VariableProjectionOptions& opt
     const double cost =
         projected_cost.evaluate(sample.inputs, sample.targets, parameters.centres, parameters.widths, gradient);
     if (progress) progress(iteration, options.iterations, cost);
+    if (data.paired_rules) tie(data, gradient);
     const double phase = std::numbers::pi * (iteration - 1) / options.iterations;
     const double rate = 0.5 * options.learning_rate * (1.0 + std::cos(phase));
     parameters.centres += centre_steps.step(gradient.centres, rate, iteration);
@@ -93,7 +141,7 @@ void fit_consequents(const FuzzyTrainingData& data, double ridge, TrainedFuzzyNe
   NormalEquations equations(parameters.centres.rows(), data.labels.cols());
   Eigen::MatrixXd phi;
   std::vector<Eigen::Index> rows;
-  const Eigen::Index step = data.mirrored() ? kBlockRows / 2 : kBlockRows;
+  const Eigen::Index step = data.mirrored_rows() ? kBlockRows / 2 : kBlockRows;
   for (Eigen::Index first = 0; first < data.rows(); first += step) {
     rows.resize(static_cast<std::size_t>(std::min(step, data.rows() - first)));
     std::iota(rows.begin(), rows.end(), first);
@@ -102,10 +150,11 @@ void fit_consequents(const FuzzyTrainingData& data, double ridge, TrainedFuzzyNe
     block_strengths(exponent_basis(block.inputs), coefficients, phi);
     equations.add(phi, block.targets);
   }
-  parameters.consequents = equations.consequents(ridge);
+  parameters.consequents = equations.consequents(ridge, pair_signs(data));
   trained.cost = equations.cost(parameters.consequents, ridge).dot(data.weights());
   trained.usage = equations.usage();
   trained.local_mean = equations.local_mean() * parameters.output_scale.asDiagonal();
+  if (data.paired_rules) tie(data, trained);
 }
 
 }  // namespace
@@ -118,7 +167,8 @@ TrainedFuzzyNetwork train_variable_projection(const FuzzyTrainingData& data, con
   trained.parameters = normalisation(data, options.input_clip);
   RandomStream random = learning_stream(options.seed);
   const NormalisedRows sample = draw_rows(data, options.max_rows, random, trained.parameters);
-  trained.parameters.centres = k_means(sample.inputs, options.rules, random);
+  trained.parameters.centres = data.paired_rules ? paired_centres(data, sample.inputs, options.rules, random)
+                                                 : k_means(sample.inputs, options.rules, random);
   trained.parameters.widths = neighbour_widths(trained.parameters.centres, options.width_floor);
   descend(data, options, random, progress, trained.parameters);
   fit_consequents(data, options.ridge, trained);

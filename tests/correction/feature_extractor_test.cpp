@@ -5,6 +5,10 @@
 
 #include "tests/support/error_message.hpp"
 #include "tests/support/line_trackers.hpp"
+#include "truebearing/filter/kalman.hpp"
+#include "truebearing/motion/constant_velocity.hpp"
+#include "truebearing/tracker/filter_tracker.hpp"
+#include "truebearing/tracker/position_sensor.hpp"
 
 namespace truebearing {
 namespace {
@@ -16,7 +20,7 @@ using testing::kNaN;
 const RecordBlocks kAll{.prediction = true, .innovation = true, .gain = true, .mode_probabilities = false};
 
 FeatureExtractor extractor_of(std::vector<FeatureSpec> features, RecordBlocks blocks = kAll) {
-  return {std::move(features), line_space(), [blocks](const std::string&) { return blocks; }};
+  return {std::move(features), line_space(), Frame::state, [blocks](const std::string&) { return blocks; }};
 }
 
 // One step of a tracker on a line, its numbers chosen so that a formula can be checked by eye.
@@ -222,7 +226,7 @@ TEST(FeatureExtractor, DifferenceNeedsACompanion) {
 
 TEST(FeatureExtractor, CompanionThatDoesNotRunIsRefused) {
   const auto build = [] {
-    FeatureExtractor({{.kind = FeatureKind::innovation, .companion = "wide"}}, line_space(),
+    FeatureExtractor({{.kind = FeatureKind::innovation, .companion = "wide"}}, line_space(), Frame::state,
                      [](const std::string& name) {
                        if (name == "wide") throw InputError("trackers", "there is no \"wide\"");
                        return kAll;
@@ -250,7 +254,7 @@ TEST(FeatureExtractor, NumberOfFeaturesIsBounded) {
 }
 
 TEST(Feature, NamesGoThereAndBackAndMisspeltOnesAreSuggested) {
-  EXPECT_EQ(feature_kind_names().size(), 10u);
+  EXPECT_EQ(feature_kind_names().size(), 15u);
   for (const std::string& name : feature_kind_names()) EXPECT_EQ(to_string(feature_kind(name)), name);
   EXPECT_THAT(error_message([] { feature_kind("inovation"); }), HasSubstr("did you mean \"innovation\""));
 }
@@ -258,12 +262,15 @@ TEST(Feature, NamesGoThereAndBackAndMisspeltOnesAreSuggested) {
 // What mirror training relies on: under a mirrored target every feature keeps or changes its sign as its parity says.
 TEST(Feature, ParityIsWhatAMirroredTargetDoes) {
   std::vector<FeatureSpec> specs;
-  for (const std::string& name : feature_kind_names())
+  for (const std::string& name : feature_kind_names()) {
+    const FeatureNeeds needs = needs_of(feature_kind(name));
+    if (needs.plane || needs.mode) continue;  // below
     specs.push_back({.kind = feature_kind(name),
                      .component = "position_m",
                      .companion = name == "companion_difference" ? "wide" : "",
                      .alpha = 0.3,
                      .offset = 0.1});
+  }
   FeatureExtractor extractor = extractor_of(specs), mirrored = extractor_of(specs);
   RandomStream random({}, StreamId::test);
   testing::RadarFilter radar;
@@ -278,9 +285,133 @@ TEST(Feature, ParityIsWhatAMirroredTargetDoes) {
     extractor.extract(tracker->step(testing::position(k, z))[0], companion, a);
     mirrored.extract(mirror_tracker->step(testing::position(k, -z))[0], mirror_companion, b);
     for (Eigen::Index i = 0; i < a.size(); ++i)
-      ASSERT_EQ(b[i], mirror_parity(specs[static_cast<std::size_t>(i)].kind) * a[i])
+      ASSERT_EQ(b[i], mirror_parity(specs[static_cast<std::size_t>(i)], Frame::state, line_space()) * a[i])
           << describe(specs[static_cast<std::size_t>(i)]);
   }
+}
+
+// A base and a companion in the plane, stepped on one stream of positions; `mirror` flips the East component, which
+// mirrors the target about the North axis, and `turn` turns it, sensor and all.
+class PlaneTrackers {
+ public:
+  using Motion = ConstantVelocity<2, DiscreteWhiteNoise>;
+  using Filter = FilterTracker<KalmanFilter<4>, Motion, PositionSensor<2>>;
+
+  explicit PlaneTrackers(std::vector<FeatureSpec> specs)
+      : base_(plane_space(), Motion{{8.0}}, {{100.0, 100.0}, 1.0}, TwoPointStart{}),
+        companion_(plane_space(), Motion{{20.0}}, {{100.0, 100.0}, 1.0}, TwoPointStart{}),
+        extractor_(std::move(specs), plane_space(), Frame::track, [&](const std::string&) { return base_.blocks(); }) {}
+
+  bool step(double time_s, const Eigen::Vector2d& z, FeatureExtractor::Features& features) {
+    const Measurement measurement{.time_s = time_s, .z = z, .sigma = {}, .sensor = {}};
+    const auto base = base_.step(measurement), companion = companion_.step(measurement);
+    if (base.empty()) return false;
+    const std::vector<const StepRecord*> companions{&companion[0]};
+    extractor_.extract(base[0], companions, features);
+    return true;
+  }
+
+ private:
+  Filter base_, companion_;
+  FeatureExtractor extractor_;
+};
+
+std::vector<FeatureSpec> plane_features() {
+  std::vector<FeatureSpec> specs{{.kind = FeatureKind::log_step},
+                                 {.kind = FeatureKind::log_nis_average, .alpha = 0.2, .offset = 0.05},
+                                 {.kind = FeatureKind::log_speed},
+                                 {.kind = FeatureKind::aspect_cosine},
+                                 {.kind = FeatureKind::aspect_sine}};
+  for (const char* component : {"along_m", "cross_m"}) {
+    specs.push_back({.kind = FeatureKind::innovation, .component = component});
+    specs.push_back({.kind = FeatureKind::innovation_average, .component = component, .alpha = 0.3});
+    specs.push_back({.kind = FeatureKind::gain, .component = component});
+    specs.push_back({.kind = FeatureKind::residual, .component = component});
+  }
+  for (const char* component : {"along_mps", "cross_mps"})
+    specs.push_back({.kind = FeatureKind::companion_difference,
+                     .component = component,
+                     .companion = "lively",
+                     .scale_is_sigma = true});
+  return specs;
+}
+
+std::vector<Eigen::Vector2d> turning_target() {
+  std::vector<Eigen::Vector2d> z;
+  RandomStream random({.seed = 8}, StreamId::test);
+  Eigen::Vector2d position(3000.0, 9000.0);
+  for (int k = 0; k < 60; ++k) {
+    const double course = 0.4 + (k > 20 ? 0.05 * (k - 20) : 0.0);
+    position += 200.0 * Eigen::Vector2d(std::sin(course), std::cos(course));
+    z.push_back(position + 100.0 * Eigen::Vector2d(random.normal(), random.normal()));
+  }
+  return z;
+}
+
+TEST(TrackFrame, FeaturesOfAMirroredTargetFollowTheirParity) {
+  const std::vector<FeatureSpec> specs = plane_features();
+  PlaneTrackers trackers(specs), mirrored(specs);
+  FeatureExtractor::Features a, b;
+  double time_s = 0.0;
+  for (const Eigen::Vector2d& z : turning_target()) {
+    time_s += 1.0;
+    if (!trackers.step(time_s, z, a) | !mirrored.step(time_s, Eigen::Vector2d(-z.x(), z.y()), b)) continue;
+    for (Eigen::Index i = 0; i < a.size(); ++i) {
+      const FeatureSpec& spec = specs[static_cast<std::size_t>(i)];
+      EXPECT_NEAR(b[i], mirror_parity(spec, Frame::track, plane_space()) * a[i], 1e-9 * (1.0 + std::abs(a[i])))
+          << describe(spec);
+    }
+  }
+}
+
+TEST(TrackFrame, FeaturesDoNotDependOnTheCourse) {
+  const std::vector<FeatureSpec> specs = plane_features();
+  PlaneTrackers trackers(specs), turned(specs);
+  const Eigen::Matrix2d R = (Eigen::Matrix2d() << 0.6, 0.8, -0.8, 0.6).finished();
+  FeatureExtractor::Features a, b;
+  double time_s = 0.0;
+  for (const Eigen::Vector2d& z : turning_target()) {
+    time_s += 1.0;
+    if (!trackers.step(time_s, z, a) | !turned.step(time_s, R * z, b)) continue;
+    // Averages are of innovations by their own deviations, which here are the same on both axes.
+    for (Eigen::Index i = 0; i < a.size(); ++i)
+      EXPECT_NEAR(b[i], a[i], 1e-9 * (1.0 + std::abs(a[i]))) << describe(specs[static_cast<std::size_t>(i)]);
+  }
+}
+
+TEST(TrackFrame, RotationIsItsOwnInverseAndPutsTheVelocityAlong) {
+  const BoundedVector x = Eigen::Vector4d(10.0, -20.0, 30.0, -40.0);
+  const FrameRotation rotation(Frame::track, x);
+  const BoundedVector turned = rotation.vector(x);
+  EXPECT_NEAR(turned[2], 50.0, 1e-12);
+  EXPECT_NEAR(turned[3], 0.0, 1e-12);
+  EXPECT_LT((rotation.vector(turned) - x).norm(), 1e-12);
+  // Cross is to starboard: a target that heads North has East there.
+  EXPECT_EQ(FrameRotation(Frame::track, Eigen::Vector4d(0.0, 0.0, 0.0, 5.0)).vector(Eigen::Vector2d(1.0, 0.0))[1], 1.0);
+  Eigen::Matrix4d A = Eigen::Matrix4d::Random();
+  const BoundedMatrix P = A * A.transpose();
+  const BoundedMatrix Q = rotation.covariance(P);
+  EXPECT_NEAR(Q.trace(), P.trace(), 1e-12);
+  EXPECT_LT((rotation.covariance(Q) - P).norm(), 1e-12);
+  EXPECT_NEAR(turned.dot(Q * turned), x.dot(P * x), 1e-6);
+}
+
+TEST(TrackFrame, NeedsThePlaneAndMeasuredPositions) {
+  EXPECT_THAT(error_message([] {
+                FeatureExtractor({{.kind = FeatureKind::log_step}}, line_space(), Frame::track,
+                                 [](const std::string&) { return kAll; });
+              }),
+              HasSubstr("plane"));
+  EXPECT_THAT(error_message([] {
+                FeatureExtractor({{.kind = FeatureKind::innovation, .component = "cross_m"}}, plane_space(),
+                                 Frame::track, [](const std::string&) { return kAll; });
+              }),
+              HasSubstr("not a position"));
+  EXPECT_THAT(error_message([] {
+                FeatureExtractor({{.kind = FeatureKind::innovation, .component = "cross_mps"}}, plane_space(),
+                                 Frame::track, [](const std::string&) { return kAll; });
+              }),
+              HasSubstr("not measured"));
 }
 
 }  // namespace

@@ -100,6 +100,27 @@ TEST(VariableProjection, MirroredInputsGiveMirroredOutputs) {
   }
 }
 
+// By rules in pairs the symmetry is exact, whatever was learnt, for even outputs as for odd ones.
+TEST(VariableProjection, PairedRulesMirrorExactly) {
+  FuzzyTrainingData data = odd_data(4000, 4);
+  data.labels.col(1) = data.features.col(0).array() + data.features.col(1).array().square();
+  data.output_parity = {-1, +1};
+  data.paired_rules = true;
+  const TrainedFuzzyNetwork trained = train_variable_projection(data, quick());
+  Eigen::MatrixXd mirrored = data.features;
+  mirrored.col(1) *= -1.0;
+  const Eigen::MatrixXd outputs = evaluate(trained.parameters, data.features);
+  const Eigen::MatrixXd of_mirrored = evaluate(trained.parameters, mirrored);
+  EXPECT_LT((of_mirrored.col(0) + outputs.col(0)).norm(), 1e-9 * outputs.col(0).norm());
+  EXPECT_LT((of_mirrored.col(1) - outputs.col(1)).norm(), 1e-9 * outputs.col(1).norm());
+  EXPECT_LT(relative_error(outputs, data.labels), 0.1);
+  EXPECT_LT((trained.usage.head(6) - trained.usage.tail(6)).norm(), 1e-12);
+
+  VariableProjectionOptions odd_number = quick();
+  odd_number.rules = 11;
+  EXPECT_THROW(train_variable_projection(data, odd_number), InputError);
+}
+
 // Data of one side only: without the mirror the other side would be extrapolation.
 TEST(VariableProjection, SymmetryTeachesTheSideThatWasNotSeen) {
   FuzzyTrainingData data = odd_data(3000, 5);

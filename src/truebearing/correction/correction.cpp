@@ -26,28 +26,33 @@ Correction::Correction(std::shared_ptr<const CorrectionModel> model, const Ensem
       base_(member(ensemble, model_->base, *model_->space)),
       reference_(member(ensemble, model_->reference, *model_->space)),
       source_(member(ensemble, model_->covariance_of, *model_->space)),
-      prototype_(model_->features, *model_->space, [&](const std::string& name) {
+      prototype_(model_->features, *model_->space, model_->frame, [&](const std::string& name) {
         return ensemble.tracker(name.empty() ? base_ : member(ensemble, name, *model_->space)).blocks();
       }) {
   model_->validate();
   for (const std::string& name : prototype_.companions()) companions_.push_back(member(ensemble, name, *model_->space));
   companion_records_.resize(companions_.size());
+  if (model_->referee && !ensemble.tracker(base_).blocks().measures_position)
+    throw InputError("correction", "has a referee, and \"" + model_->base + "\" measures no position",
+                     "a base that measures positions, or no referee");
   reset();
 }
 
 void Correction::reset() {
-  tracks_.assign(1, Track{-1, false, prototype_});
+  tracks_.assign(1, Track{-1, false, prototype_, {}});
   records_.assign(1, StepRecord{});
 }
 
-FeatureExtractor& Correction::extractor_of(int track) {
-  auto slot = std::find_if(tracks_.begin(), tracks_.end(), [&](const Track& t) { return t.id == track; });
-  if (slot == tracks_.end())
+Correction::Track& Correction::track_of(int id) {
+  auto slot = std::find_if(tracks_.begin(), tracks_.end(), [&](const Track& t) { return t.id == id; });
+  if (slot == tracks_.end()) {
     slot = std::find_if(tracks_.begin(), tracks_.end(), [](const Track& t) { return !t.seen; });
-  if (slot == tracks_.end()) slot = tracks_.insert(tracks_.end(), Track{track, true, prototype_});
-  slot->id = track;
+    if (slot == tracks_.end()) slot = tracks_.insert(tracks_.end(), Track{id, true, prototype_, {}});
+    slot->referee = {};
+  }
+  slot->id = id;
   slot->seen = true;
-  return slot->extractor;
+  return *slot;
 }
 
 std::span<const StepRecord> Correction::correct(const Ensemble& ensemble) {
@@ -68,26 +73,35 @@ std::span<const StepRecord> Correction::correct(const Ensemble& ensemble) {
       records_[i].correction = CorrectionOutcome{.base_x = reference.x, .base_P = reference.P};
       continue;
     }
-    extractor_of(reference.track).extract(*base, companion_records_, features_);
-    correct_record(*base, reference, *source, features_, records_[i]);
+    Track& track = track_of(reference.track);
+    track.extractor.extract(*base, companion_records_, features_);
+    if (model_->referee) track.referee.judge(*base, *model_->referee);
+    correct_record(*base, reference, *source, track, records_[i]);
   }
   return {records_.data(), references.size()};
 }
 
 void Correction::correct_record(const StepRecord& base, const StepRecord& reference, const StepRecord& source,
-                                const FuzzyNetwork::Inputs& features, StepRecord& corrected) {
+                                Track& track, StepRecord& corrected) {
   const FuzzyNetwork& network = model_->network;
+  const FrameRotation& rotation = track.extractor.rotation();
   corrected = base;
   corrected.correction = CorrectionOutcome{.base_x = base.x, .base_P = base.P};
   corrected.x = reference.x;
   corrected.P = reference.P;
-  if (!features.allFinite()) return;  // g = 0
+  if (!features_.allFinite()) return;  // g = 0
 
-  network.strengths(features, phi_);
-  const BoundedVector d = base.x + network.output(phi_) - reference.x;
-  const BoundedMatrix P_c = phi_.dot(model_->inflation) * source.P;
+  network.strengths(features_, phi_);
+  BoundedVector output = network.output(phi_);
+  if (model_->output_in_sigma) output.array() *= rotation.covariance(base.P).diagonal().array().sqrt();
+  const BoundedVector d = base.x + rotation.vector(output) - reference.x;
+  const BoundedMatrix P_c = rotation.covariance(model_->head_covariance(phi_, rotation.covariance(source.P)));
   const Limited limited = limit_kappa(reference.P, d, model_->kappa);
-  const double g = model_->gate ? model_->gate->weight(features, disagreement(d, P_c, reference.P)) : 1.0;
+  double g = model_->gate ? model_->gate->weight(features_, disagreement(d, P_c, reference.P)) : 1.0;
+  if (model_->referee) {
+    g *= track.referee.weight(*model_->referee);
+    track.referee.predict(base.time_s, reference.x + limited.d, reference.x);
+  }
 
   const BoundedVector x = reference.x + g * limited.d;
   // Written as a change of P_reference: nothing to correct leaves the covariance as it is, to the bit.

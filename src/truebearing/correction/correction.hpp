@@ -1,10 +1,11 @@
 // Correction: a function of the records of an ensemble,
 //
-//     x_corrected = x_reference + g limit_kappa(x_base + network(features) - x_reference)
-//     P_corrected = g P_c + (1 - g) P_reference + g (1 - g) d d',   P_c = (sum_j phi_j inflation_j) P_source,
+//     x_corrected = x_reference + g limit_kappa(x_base + T' D network(features) - x_reference)
+//     P_corrected = g P_c + (1 - g) P_reference + g (1 - g) d d'
 //
-// with d the limited difference of the two means and g the weight of the box gate. It is open loop: nothing is written
-// back into any tracker.
+// with T the rotation into the correction's frame, D its output scale (1, or the base's standard deviations there), d
+// the limited difference of the two means, g the weight of box gate and referee, and P_c the covariance that the
+// model's covariance head gives (correction_model.hpp). It is open loop: nothing is written back into any tracker.
 #pragma once
 
 #include <memory>
@@ -34,11 +35,12 @@ class Correction {
     int id;
     bool seen;
     FeatureExtractor extractor;
+    Referee referee;
   };
 
-  FeatureExtractor& extractor_of(int track);
-  void correct_record(const StepRecord& base, const StepRecord& reference, const StepRecord& source,
-                      const FuzzyNetwork::Inputs& features, StepRecord& corrected);
+  Track& track_of(int id);
+  void correct_record(const StepRecord& base, const StepRecord& reference, const StepRecord& source, Track& track,
+                      StepRecord& corrected);
 
   std::shared_ptr<const CorrectionModel> model_;
   int base_;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "truebearing/core/covariance.hpp"
 #include "truebearing/core/error.hpp"
 
 namespace truebearing {
@@ -13,6 +14,17 @@ void require(bool valid, const char* where, const std::string& found, const std:
 }
 
 }  // namespace
+
+BoundedMatrix CorrectionModel::head_covariance(const FuzzyNetwork::Strengths& phi, const BoundedMatrix& P) const {
+  if (moments.size() == 0) return phi.dot(inflation) * P;
+  const Eigen::Index n = P.rows();
+  const BoundedVector sigma = P.diagonal().cwiseSqrt();
+  BoundedMatrix mean(n, n);
+  for (Eigen::Index j = 0; j < n; ++j)
+    for (Eigen::Index i = j; i < n; ++i)
+      mean(i, j) = mean(j, i) = sigma[i] * sigma[j] * phi.dot(moments.col(i + n * j));
+  return mean;
+}
 
 void CorrectionModel::validate() const {
   const auto d = static_cast<Eigen::Index>(features.size());
@@ -26,8 +38,27 @@ void CorrectionModel::validate() const {
   require(!base.empty() && !reference.empty() && !covariance_of.empty(), "trackers", "a name is empty",
           "names of base, reference and covariance_of");
   require(kappa > 0.0, "kappa", fmt::format("is {}", kappa), "a number > 0, or null for none");
-  require(inflation.size() == M && inflation.allFinite() && (inflation.array() > 0.0).all(), "inflation",
-          fmt::format("holds {} numbers, or one that is not > 0", inflation.size()), fmt::format("{} numbers > 0", M));
+  space_in(frame, *space);
+  if (moments.size() == 0) {
+    require(inflation.size() == M && inflation.allFinite() && (inflation.array() > 0.0).all(), "inflation",
+            fmt::format("holds {} numbers, or one that is not > 0", inflation.size()),
+            fmt::format("{} numbers > 0", M));
+  } else {
+    require(inflation.size() == 0, "inflation", "stands beside moments", "one of the two");
+    require(moments.rows() == M && moments.cols() == n * n, "moments",
+            fmt::format("is {} x {}", moments.rows(), moments.cols()), fmt::format("{} x {}", M, n * n));
+    for (Eigen::Index j = 0; j < M; ++j)
+      require(is_covariance(BoundedMatrix(moments.row(j).reshaped(n, n))), "moments",
+              fmt::format("of rule {} are no covariance", j), "symmetric positive semi-definite matrices");
+  }
+  if (referee) {
+    require(referee->alpha > 0.0 && referee->alpha <= 1.0, "referee.alpha", fmt::format("is {}", referee->alpha),
+            "a number in (0, 1]");
+    require(referee->tolerance > 0.0 && std::isfinite(referee->tolerance), "referee.tolerance",
+            fmt::format("is {}", referee->tolerance), "a number > 0");
+    require(referee->edge > 0.0 && std::isfinite(referee->edge), "referee.edge", fmt::format("is {}", referee->edge),
+            "a number > 0");
+  }
   require(usage.size() == M && usage.allFinite(), "usage", fmt::format("holds {} numbers", usage.size()),
           fmt::format("{} finite numbers", M));
   require(local_mean.rows() == M && local_mean.cols() == n && local_mean.allFinite(), "local_mean",

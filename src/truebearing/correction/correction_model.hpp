@@ -11,6 +11,7 @@
 #include "truebearing/correction/box_gate.hpp"
 #include "truebearing/correction/feature.hpp"
 #include "truebearing/correction/fuzzy_network.hpp"
+#include "truebearing/correction/referee.hpp"
 
 namespace truebearing {
 
@@ -23,17 +24,32 @@ struct CorrectionModel {
   /// Configuration of every tracker that takes part, as the study spelt it: a correction belongs to these.
   std::map<std::string, std::string> trackers;
 
+  Frame frame = Frame::state;  ///< that features and corrections are in
+  /// The network's outputs are in standard deviations of the base, component by component in the frame, and not in the
+  /// units of the state.
+  bool output_in_sigma = false;
   std::vector<FeatureSpec> features;
   FuzzyNetwork network;
   std::optional<BoxGate> gate;                             ///< absent: always open
   double kappa = std::numeric_limits<double>::infinity();  ///< infinity: not limited
-  Eigen::VectorXd inflation;  ///< (M), > 0: P_correction = (sum_j phi_j inflation_j) P of `covariance_of`
+  std::optional<RefereeOptions> referee;                   ///< absent: none
+
+  /// The correction's own covariance, from one of two heads. `inflation` (M), > 0: (sum_j phi_j inflation_j) P, P that
+  /// of `covariance_of`.
+  Eigen::VectorXd inflation;
+  /// Or `moments` (M x n n), each row a covariance in the frame, in standard deviations sigma of `covariance_of` there:
+  /// diag(sigma) (sum_j phi_j Sigma_j) diag(sigma). A mean of covariances is one.
+  Eigen::MatrixXd moments;
 
   // For the reader, per rule: what it is used for, and what the teacher said where it was used.
   Eigen::VectorXd usage;       ///< (M), mean phi over the training data
-  Eigen::MatrixXd local_mean;  ///< (M x n), phi-weighted mean of the teacher signal, in the units of the state
+  Eigen::MatrixXd local_mean;  ///< (M x n), phi-weighted mean of the teacher signal, in the units of the outputs
 
   std::map<std::string, std::string> provenance;  ///< where it comes from: study, seed, runs, version, scores
+
+  /// What the covariance head makes of rule strengths phi (M) and the covariance P (n x n) of `covariance_of`, P and
+  /// the result both in the frame. Any units: sigma is that of P.
+  BoundedMatrix head_covariance(const FuzzyNetwork::Strengths& phi, const BoundedMatrix& P) const;
 
   /// Throws InputError where parts disagree in shape, are not finite or out of range.
   void validate() const;

@@ -1,5 +1,6 @@
 #include "truebearing/correction/feature.hpp"
 
+#include <algorithm>
 #include <array>
 #include <fmt/format.h>
 
@@ -13,42 +14,71 @@ constexpr RecordBlocks kNothing{};
 constexpr RecordBlocks kPrediction{.prediction = true};
 constexpr RecordBlocks kInnovation{.innovation = true};
 constexpr RecordBlocks kGain{.gain = true};
+constexpr RecordBlocks kModes{.mode_probabilities = true};
+
+/// How a feature answers to a mirrored target.
+enum class Mirror {
+  even,         ///< stays
+  odd,          ///< changes sign
+  by_component  ///< as its component does
+};
 
 struct Kind {
   FeatureKind kind;
   const char* name;
-  int parity;
+  Mirror mirror;
   FeatureNeeds needs;
 };
 
-// One line per kind: everything the house knows of it besides its formula, which is in feature_extractor.cpp.
 constexpr auto kOptional = FeatureNeeds::Companion::optional;
 constexpr auto kRequired = FeatureNeeds::Companion::required;
+constexpr auto kComponent = FeatureNeeds::Component::required;
+constexpr auto kAxis = FeatureNeeds::Component::optional;
 
 // One line per kind: everything the house knows of it besides its formula, which is in feature_extractor.cpp.
-constexpr std::array<Kind, 10> kKinds{{
-    {FeatureKind::log_step, "log_step", +1, {.blocks = kNothing}},
-    {FeatureKind::gain, "gain", +1, {.component = true, .blocks = kGain}},
-    {FeatureKind::residual, "residual", -1, {.component = true, .blocks = kInnovation}},
-    {FeatureKind::prediction_difference, "prediction_difference", -1, {.component = true, .blocks = kPrediction}},
-    {FeatureKind::innovation, "innovation", -1, {.companion = kOptional, .blocks = kInnovation}},
+constexpr std::array<Kind, 15> kKinds{{
+    {FeatureKind::log_step, "log_step", Mirror::even, {.blocks = kNothing}},
+    {FeatureKind::gain, "gain", Mirror::even, {.component = kComponent, .blocks = kGain}},
+    {FeatureKind::residual, "residual", Mirror::by_component, {.component = kComponent, .blocks = kInnovation}},
+    {FeatureKind::prediction_difference,
+     "prediction_difference",
+     Mirror::by_component,
+     {.component = kComponent, .blocks = kPrediction}},
+    {FeatureKind::innovation,
+     "innovation",
+     Mirror::by_component,
+     {.component = kAxis, .companion = kOptional, .blocks = kInnovation}},
     {FeatureKind::innovation_average,
      "innovation_average",
-     -1,
-     {.companion = kOptional, .alpha = true, .blocks = kInnovation}},
+     Mirror::by_component,
+     {.component = kAxis, .companion = kOptional, .alpha = true, .blocks = kInnovation}},
     {FeatureKind::log_nis_average,
      "log_nis_average",
-     +1,
+     Mirror::even,
      {.companion = kOptional, .alpha = true, .offset = true, .blocks = kInnovation}},
-    {FeatureKind::log_mean_nis, "log_mean_nis", +1, {.companion = kOptional, .offset = true, .blocks = kInnovation}},
+    {FeatureKind::log_mean_nis,
+     "log_mean_nis",
+     Mirror::even,
+     {.companion = kOptional, .offset = true, .blocks = kInnovation}},
     {FeatureKind::estimate,
      "estimate",
-     -1,
-     {.component = true, .companion = kOptional, .scale = true, .blocks = kNothing}},
+     Mirror::by_component,
+     {.component = kComponent, .companion = kOptional, .scale = true, .blocks = kNothing}},
     {FeatureKind::companion_difference,
      "companion_difference",
-     -1,
-     {.component = true, .companion = kRequired, .scale = true, .blocks = kNothing}},
+     Mirror::by_component,
+     {.component = kComponent, .companion = kRequired, .scale = true, .blocks = kNothing}},
+    {FeatureKind::log_sigma,
+     "log_sigma",
+     Mirror::even,
+     {.component = kComponent, .companion = kOptional, .blocks = kNothing}},
+    {FeatureKind::log_speed, "log_speed", Mirror::even, {.companion = kOptional, .plane = true, .blocks = kNothing}},
+    {FeatureKind::aspect_cosine, "aspect_cosine", Mirror::even, {.plane = true, .blocks = kNothing}},
+    {FeatureKind::aspect_sine, "aspect_sine", Mirror::odd, {.plane = true, .blocks = kNothing}},
+    {FeatureKind::mode_probability,
+     "mode_probability",
+     Mirror::even,
+     {.companion = kOptional, .mode = true, .blocks = kModes}},
 }};
 
 const Kind& entry(FeatureKind kind) {
@@ -80,12 +110,21 @@ FeatureNeeds needs_of(FeatureKind kind) {
   return entry(kind).needs;
 }
 
-int mirror_parity(FeatureKind kind) {
-  return entry(kind).parity;
+int mirror_parity(const FeatureSpec& feature, Frame frame, const StateSpace& space) {
+  switch (entry(feature.kind).mirror) {
+    case Mirror::even:
+      return +1;
+    case Mirror::odd:
+      return -1;
+    case Mirror::by_component:
+      break;
+  }
+  return component_parity(frame, std::max(space_in(frame, space).component_index(feature.component), 0));
 }
 
 std::string describe(const FeatureSpec& feature) {
   const std::string of = feature.companion.empty() ? "" : " of " + feature.companion;
+  const std::string in = feature.component.empty() ? "" : " in " + feature.component;
   switch (feature.kind) {
     case FeatureKind::log_step:
       return "ln step";
@@ -96,9 +135,9 @@ std::string describe(const FeatureSpec& feature) {
     case FeatureKind::prediction_difference:
       return "prediction difference in " + feature.component;
     case FeatureKind::innovation:
-      return "innovation" + of;
+      return "innovation" + of + in;
     case FeatureKind::innovation_average:
-      return fmt::format("innovation average {}{}", feature.alpha, of);
+      return fmt::format("innovation average {}{}{}", feature.alpha, of, in);
     case FeatureKind::log_nis_average:
       return fmt::format("ln NIS average {}{}", feature.alpha, of);
     case FeatureKind::log_mean_nis:
@@ -107,6 +146,16 @@ std::string describe(const FeatureSpec& feature) {
       return fmt::format("estimate{} in {}", of, feature.component);
     case FeatureKind::companion_difference:
       return fmt::format("difference{} in {}", of, feature.component);
+    case FeatureKind::log_sigma:
+      return fmt::format("ln sigma{} in {}", of, feature.component);
+    case FeatureKind::log_speed:
+      return "ln speed" + of;
+    case FeatureKind::aspect_cosine:
+      return "cosine of the aspect";
+    case FeatureKind::aspect_sine:
+      return "sine of the aspect";
+    case FeatureKind::mode_probability:
+      return fmt::format("probability of mode {}{}", feature.mode, of);
   }
   return {};
 }

@@ -11,12 +11,24 @@
 namespace truebearing {
 namespace {
 
-void check(const FeatureSpec& feature, const StateSpace& space, const FeatureExtractor::BlocksOf& blocks_of) {
+// `space`: of the base's state; `components`: its components in the frame.
+void check(const FeatureSpec& feature, const StateSpace& space, const StateSpace& components,
+           const FeatureExtractor::BlocksOf& blocks_of) {
   const FeatureNeeds needs = needs_of(feature.kind);
   const std::string where = fmt::format("feature {}", to_string(feature.kind));
-  if (needs.component && space.component_index(feature.component) < 0)
+  const bool named = needs.component == FeatureNeeds::Component::required ||
+                     (needs.component == FeatureNeeds::Component::optional && !feature.component.empty());
+  const int component = components.component_index(feature.component);
+  if (named && component < 0)
     throw InputError(where, fmt::format("component \"{}\" is not in the state", feature.component),
-                     suggestion(feature.component, space.components));
+                     suggestion(feature.component, components.components));
+  const bool measured = needs.component == FeatureNeeds::Component::optional || feature.kind == FeatureKind::residual;
+  if (measured && component >= components.size() / 2 && component > 0)
+    throw InputError(where, fmt::format("component \"{}\" is not measured", feature.component), "a position");
+  if (needs.plane && space != plane_space())
+    throw InputError(where, "has no meaning in the space " + space.name, "the space plane");
+  if (needs.mode && (feature.mode < 1 || feature.mode > kMaxDimension))
+    throw InputError(where, fmt::format("mode is {}", feature.mode), fmt::format("1 to {}", kMaxDimension));
   if (needs.companion == FeatureNeeds::Companion::required && feature.companion.empty())
     throw InputError(where, "names no companion");
   if (needs.alpha && !(feature.alpha > 0.0 && feature.alpha <= 1.0))
@@ -33,26 +45,31 @@ void check(const FeatureSpec& feature, const StateSpace& space, const FeatureExt
   if (needs.blocks.prediction && !blocks.prediction) throw missing("prediction");
   if (needs.blocks.innovation && !blocks.innovation) throw missing("innovation");
   if (needs.blocks.gain && !blocks.gain) throw missing("gain");
+  if (measured && &space != &components && !blocks.measures_position)
+    throw InputError(where, "has no direction: what is measured is not a position", "a tracker of positions");
+  if (needs.blocks.mode_probabilities && !blocks.mode_probabilities) throw missing("mode probabilities");
 }
 
 }  // namespace
 
-FeatureExtractor::FeatureExtractor(std::vector<FeatureSpec> features, const StateSpace& space,
+FeatureExtractor::FeatureExtractor(std::vector<FeatureSpec> features, const StateSpace& space, Frame frame,
                                    const BlocksOf& blocks_of)
-    : features_(std::move(features)) {
+    : frame_(frame), features_(std::move(features)) {
+  const StateSpace& components = space_in(frame, space);
   if (features_.empty() || features_.size() > FuzzyNetwork::kMaxInputs)
     throw InputError("features", fmt::format("there are {}", features_.size()),
                      fmt::format("1 to {}", FuzzyNetwork::kMaxInputs));
   for (const FeatureSpec& feature : features_) {
-    check(feature, space, blocks_of);
+    check(feature, space, components, blocks_of);
     int companion = -1;
     if (!feature.companion.empty()) {
       const auto known = std::find(companions_.begin(), companions_.end(), feature.companion);
       companion = static_cast<int>(known - companions_.begin());
       if (known == companions_.end()) companions_.push_back(feature.companion);
     }
-    terms_.push_back({feature.kind, space.component_index(feature.component), companion, feature.alpha, feature.offset,
-                      feature.scale});
+    wants_sigma_ |= feature.scale_is_sigma || feature.kind == FeatureKind::log_sigma;
+    terms_.push_back({feature.kind, std::max(components.component_index(feature.component), 0), companion,
+                      feature.alpha, feature.offset, feature.scale, feature.scale_is_sigma, feature.mode - 1});
   }
 }
 
@@ -63,13 +80,20 @@ void FeatureExtractor::reset() {
 void FeatureExtractor::begin_track(int track) {
   track_ = track;
   steps_ = 0.0;
-  for (Term& term : terms_) term.memory = term.used = 0.0;
+  gain_.resize(0, 0);
+  for (Term& term : terms_) {
+    term.memory = BoundedVector::Zero(1);
+    term.used = 0.0;
+  }
 }
 
 void FeatureExtractor::extract(const StepRecord& base, std::span<const StepRecord* const> companions,
                                Features& features) {
   if (base.track != track_) begin_track(base.track);
   if (base.status == StepStatus::ok) steps_ += 1.0;
+  if (base.status == StepStatus::ok && base.gain) gain_ = *base.gain;
+  rotation_ = FrameRotation(frame_, base.x);
+  if (wants_sigma_) sigma_ = rotation_.covariance(base.P).diagonal().cwiseSqrt();
   features.resize(size());
   for (int i = 0; i < size(); ++i) {
     Term& term = terms_[static_cast<std::size_t>(i)];
@@ -78,7 +102,7 @@ void FeatureExtractor::extract(const StepRecord& base, std::span<const StepRecor
       remember(term, base);
     else if (companion)
       remember(term, *companion);
-    features[i] = value(term, base, companion, steps_);
+    features[i] = value(term, base, companion);
   }
 }
 
@@ -86,61 +110,98 @@ void FeatureExtractor::extract(const StepRecord& base, std::span<const StepRecor
 void FeatureExtractor::remember(Term& term, const StepRecord& record) {
   if (record.status != StepStatus::ok || !record.innovation) return;
   const Innovation& innovation = *record.innovation;
-  double& memory = term.memory;
+  BoundedVector& memory = term.memory;
   term.used += 1.0;
   switch (term.kind) {
-    case FeatureKind::gain:
-      if (record.gain) memory = (*record.gain)(term.component, 0);
-      break;
     case FeatureKind::residual:
-      memory = innovation.z[0] - record.x[term.component];
+      memory = innovation.z - record.x.head(innovation.z.size());
       break;
     case FeatureKind::prediction_difference:
-      if (record.prediction) memory = record.prediction->x[term.component] - record.x[term.component];
+      if (record.prediction) memory = record.prediction->x - record.x;
       break;
     case FeatureKind::innovation:
-      memory = innovation.nu[0] / std::sqrt(innovation.S(0, 0));
+    case FeatureKind::innovation_average: {
+      const double alpha = term.kind == FeatureKind::innovation ? 1.0 : term.alpha;
+      if (memory.size() != innovation.nu.size()) memory = BoundedVector::Zero(innovation.nu.size());
+      for (Eigen::Index i = 0; i < memory.size(); ++i) {
+        const double e = innovation.nu[i] / std::sqrt(innovation.S(i, i));
+        memory[i] = alpha == 1.0 ? e : memory[i] + alpha * (e - memory[i]);
+      }
       break;
-    case FeatureKind::innovation_average:
-      memory += term.alpha * (innovation.nu[0] / std::sqrt(innovation.S(0, 0)) - memory);
-      break;
+    }
     case FeatureKind::log_nis_average:
-      memory += term.alpha * (innovation.nis - memory);
+      memory[0] += term.alpha * (innovation.nis - memory[0]);
       break;
     case FeatureKind::log_mean_nis:
-      memory += (innovation.nis - memory) / term.used;
+      memory[0] += (innovation.nis - memory[0]) / term.used;
       break;
     case FeatureKind::log_step:
+    case FeatureKind::gain:
     case FeatureKind::estimate:
     case FeatureKind::companion_difference:
+    case FeatureKind::log_sigma:
+    case FeatureKind::log_speed:
+    case FeatureKind::aspect_cosine:
+    case FeatureKind::aspect_sine:
+    case FeatureKind::mode_probability:
       break;
   }
 }
 
-double FeatureExtractor::value(const Term& term, const StepRecord& base, const StepRecord* companion, double steps) {
-  if (term.companion >= 0 && !companion) return std::numeric_limits<double>::quiet_NaN();
+double FeatureExtractor::value(const Term& term, const StepRecord& base, const StepRecord* companion) const {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kLeastSpeed_mps = 1e-3;
+  if (term.companion >= 0 && !companion) return kNaN;
+  const StepRecord& record = companion ? *companion : base;
+  if (record.x.size() != base.x.size()) return kNaN;
+  const int c = term.component;
+  // A component of a vector of the state's own frame, in the frame; before the first used measurement it is zero.
+  const auto in_frame = [&](const BoundedVector& v) {
+    if (rotation_.rotates() && v.size() < 2) return 0.0;
+    return c < v.size() ? rotation_.component(v, c) : 0.0;
+  };
+  const auto scaled = [&](double value) { return value / (term.scale_is_sigma ? sigma_[c] : term.scale); };
   switch (term.kind) {
     case FeatureKind::log_step:
-      return std::log(std::max(steps, 1.0));
-    case FeatureKind::gain:
+      return std::log(std::max(steps_, 1.0));
+    case FeatureKind::gain: {
+      if (c >= gain_.rows()) return 0.0;
+      BoundedVector row(gain_.cols());
+      for (Eigen::Index j = 0; j < gain_.cols(); ++j) row[j] = rotation_.component(gain_.col(j), c);
+      return rotation_.component(row, c % gain_.cols());
+    }
     case FeatureKind::residual:
     case FeatureKind::prediction_difference:
     case FeatureKind::innovation:
-      return term.memory;
+      return in_frame(term.memory);
     case FeatureKind::innovation_average:
-      return term.memory / std::sqrt(term.alpha / (2.0 - term.alpha));
+      return in_frame(term.memory) / std::sqrt(term.alpha / (2.0 - term.alpha));
     case FeatureKind::log_nis_average:
     case FeatureKind::log_mean_nis:
-      return std::log(term.offset + term.memory);
-    case FeatureKind::estimate: {
-      const BoundedVector& x = companion ? companion->x : base.x;
-      return x.size() == base.x.size() ? x[term.component] / term.scale : std::numeric_limits<double>::quiet_NaN();
-    }
+      return std::log(term.offset + term.memory[0]);
+    case FeatureKind::estimate:
+      return scaled(in_frame(record.x));
     case FeatureKind::companion_difference:
-      if (companion->x.size() != base.x.size()) return std::numeric_limits<double>::quiet_NaN();
-      return (companion->x[term.component] - base.x[term.component]) / term.scale;
+      return scaled(in_frame(BoundedVector(record.x - base.x)));
+    case FeatureKind::log_sigma:
+      return std::log(companion ? std::sqrt(rotation_.covariance(record.P)(c, c)) : sigma_[c]);
+    case FeatureKind::log_speed:
+      return std::log(std::max(record.x.tail<2>().norm(), kLeastSpeed_mps));
+    case FeatureKind::aspect_cosine:
+    case FeatureKind::aspect_sine: {
+      Eigen::Vector2d sight = base.x.head<2>();
+      if (base.sensor) sight -= base.sensor->position_m;
+      const Eigen::Vector2d v = base.x.tail<2>();
+      const double size = sight.norm() * v.norm();
+      if (!(size > 0.0)) return 0.0;
+      const double cross = v.x() * sight.y() - v.y() * sight.x();
+      return (term.kind == FeatureKind::aspect_cosine ? v.dot(sight) : cross) / size;
+    }
+    case FeatureKind::mode_probability:
+      if (!record.mode_probabilities || term.mode >= record.mode_probabilities->size()) return kNaN;
+      return (*record.mode_probabilities)[term.mode];
   }
-  return std::numeric_limits<double>::quiet_NaN();
+  return kNaN;
 }
 
 }  // namespace truebearing

@@ -21,10 +21,10 @@ class FeatureExtractor {
   /// The blocks in the records of a tracker, by its name; of the base for an empty name.
   using BlocksOf = std::function<RecordBlocks(const std::string&)>;
 
-  /// space: of the base's state. Throws InputError where a feature names a component that the space has not, a constant
-  /// is out of range, a block that it reads is not in its tracker's records, or there are more features than a network
-  /// takes.
-  FeatureExtractor(std::vector<FeatureSpec> features, const StateSpace& space, const BlocksOf& blocks_of);
+  /// space: of the base's state; frame: that the features' components are of. Throws InputError where a feature names a
+  /// component that the space has not, a constant is out of range, a block that it reads is not in its tracker's
+  /// records, or there are more features than a network takes.
+  FeatureExtractor(std::vector<FeatureSpec> features, const StateSpace& space, Frame frame, const BlocksOf& blocks_of);
 
   const std::vector<FeatureSpec>& features() const { return features_; }
   int size() const { return static_cast<int>(features_.size()); }
@@ -35,6 +35,8 @@ class FeatureExtractor {
   /// between; a new track starts them afresh. A companion without a record gives NaN. No allocation.
   void extract(const StepRecord& base, std::span<const StepRecord* const> companions, Features& features);
   void reset();
+  /// The rotation into the frame for the base's estimate of the last step.
+  const FrameRotation& rotation() const { return rotation_; }
 
  private:
   struct Term {
@@ -42,17 +44,25 @@ class FeatureExtractor {
     int component;
     int companion;  // -1: none
     double alpha, offset, scale;
-    double memory = 0.0;  // the average, or the last value of what only a used measurement gives
-    double used = 0.0;    // steps in which the measurement was used
+    bool scale_is_sigma;
+    int mode;
+    // What only a used measurement gives, or an average of it: a number, or a vector in the state's own frame.
+    BoundedVector memory = BoundedVector::Zero(1);
+    double used = 0.0;  // steps in which the measurement was used
   };
 
   void begin_track(int track);
   static void remember(Term& term, const StepRecord& record);
-  static double value(const Term& term, const StepRecord& base, const StepRecord* companion, double steps);
+  double value(const Term& term, const StepRecord& base, const StepRecord* companion) const;
 
+  Frame frame_ = Frame::state;
   std::vector<FeatureSpec> features_;
   std::vector<std::string> companions_;
   std::vector<Term> terms_;
+  bool wants_sigma_ = false;
+  FrameRotation rotation_;  // of this step
+  BoundedVector sigma_;     // the base's standard deviations in the frame, where a feature wants them
+  BoundedMatrix gain_;      // of the last used measurement
   int track_ = -1;
   double steps_ = 0.0;
 };

@@ -17,6 +17,8 @@ using OrderedJson = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "truebearing-correction";
 constexpr int kVersion = 1;
+constexpr const char* kSigma = "sigma";
+constexpr const char* kMoments = "moments";
 
 // One object of the file, read key by key; finish() refuses every key that nobody asked for.
 class ObjectReader {
@@ -99,13 +101,26 @@ FeatureSpec read_feature(ObjectReader object) {
     throw object.error("kind", error.found(), error.valid());
   }
   const FeatureNeeds needs = needs_of(feature.kind);
-  if (needs.component) feature.component = object.text("component");
+  if (needs.component == FeatureNeeds::Component::required ||
+      (needs.component == FeatureNeeds::Component::optional && object.has("component")))
+    feature.component = object.text("component");
   if (needs.companion == FeatureNeeds::Companion::required ||
       (needs.companion == FeatureNeeds::Companion::optional && object.has("companion")))
     feature.companion = object.text("companion");
   if (needs.alpha) feature.alpha = object.number("alpha");
   if (needs.offset) feature.offset = object.number("offset");
-  if (needs.scale) feature.scale = object.number("scale");
+  if (needs.scale && object.at("scale").is_string()) {
+    if (object.text("scale") != kSigma) throw object.error("scale", "is no number", "a number, or \"sigma\"");
+    feature.scale_is_sigma = true;
+  } else if (needs.scale) {
+    feature.scale = object.number("scale");
+  }
+  if (needs.mode) {
+    const double mode = object.number("mode");
+    if (!(mode >= 1.0 && mode <= kMaxDimension && mode == std::floor(mode)))
+      throw object.error("mode", fmt::format("is {}", mode), fmt::format("1 to {}", kMaxDimension));
+    feature.mode = static_cast<int>(mode);
+  }
   object.finish();
   return feature;
 }
@@ -113,11 +128,12 @@ FeatureSpec read_feature(ObjectReader object) {
 OrderedJson feature_json(const FeatureSpec& feature) {
   const FeatureNeeds needs = needs_of(feature.kind);
   OrderedJson json{{"kind", std::string(to_string(feature.kind))}};
-  if (needs.component) json["component"] = feature.component;
+  if (!feature.component.empty()) json["component"] = feature.component;
   if (!feature.companion.empty()) json["companion"] = feature.companion;
   if (needs.alpha) json["alpha"] = feature.alpha;
   if (needs.offset) json["offset"] = feature.offset;
-  if (needs.scale) json["scale"] = feature.scale;
+  if (needs.scale) json["scale"] = feature.scale_is_sigma ? OrderedJson(kSigma) : OrderedJson(feature.scale);
+  if (needs.mode) json["mode"] = feature.mode;
   return json;
 }
 
@@ -156,6 +172,17 @@ CorrectionModel model_from(const Json& json, const std::string& name) {
   ObjectReader trackers = file.object("trackers");
   for (const auto& [key, value] : json["trackers"].items()) model.trackers[key] = trackers.text(key);
 
+  if (file.has("frame")) {
+    const std::string frame = file.text("frame");
+    if (frame != to_string(Frame::state) && frame != to_string(Frame::track))
+      throw file.error("frame", "is \"" + frame + "\"", "state, track");
+    model.frame = frame == to_string(Frame::track) ? Frame::track : Frame::state;
+  }
+  if (file.has("output_in")) {
+    if (file.text("output_in") != kSigma)
+      throw file.error("output_in", "is not \"sigma\"", "\"sigma\", or no such key");
+    model.output_in_sigma = true;
+  }
   const Json& features = file.array("features", 1, FuzzyNetwork::kMaxInputs);
   for (std::size_t i = 0; i < features.size(); ++i)
     model.features.push_back(read_feature(ObjectReader(features[i], name, fmt::format("features[{}]", i))));
@@ -177,12 +204,22 @@ CorrectionModel model_from(const Json& json, const std::string& name) {
     gate.finish();
   }
 
+  if (file.has("referee")) {
+    ObjectReader referee = file.object("referee");
+    model.referee = RefereeOptions{referee.number("alpha"), referee.number("tolerance"), referee.number("edge")};
+    referee.finish();
+  }
+
   const Json& rules = file.array("rules", 1, FuzzyNetwork::kMaxRules);
   const auto M = static_cast<Eigen::Index>(rules.size());
   parameters.centres.resize(M, d);
   parameters.widths.resize(M, d);
   parameters.consequents.resize(M, n);
-  model.inflation.resize(M);
+  const bool moments = file.has("covariance");
+  if (moments && file.text("covariance") != kMoments)
+    throw file.error("covariance", "is not \"moments\"", "\"moments\", or no such key");
+  model.inflation.resize(moments ? 0 : M);
+  model.moments.resize(moments ? M : 0, moments ? n * n : 0);
   model.usage.resize(M);
   model.local_mean.resize(M, n);
   for (Eigen::Index j = 0; j < M; ++j) {
@@ -190,7 +227,10 @@ CorrectionModel model_from(const Json& json, const std::string& name) {
     parameters.centres.row(j) = rule.vector("centre", d).transpose();
     parameters.widths.row(j) = rule.vector("width", d).transpose();
     parameters.consequents.row(j) = rule.vector("consequent", n).transpose();
-    model.inflation[j] = rule.number("inflation");
+    if (moments)
+      model.moments.row(j) = rule.vector("moments", n * n).transpose();
+    else
+      model.inflation[j] = rule.number("inflation");
     model.usage[j] = rule.number("usage");
     model.local_mean.row(j) = rule.vector("local_mean", n).transpose();
     rule.finish();
@@ -230,6 +270,8 @@ std::string model_text(const CorrectionModel& model) {
   json["kappa"] = limit_json(model.kappa);
   json["trackers"] = OrderedJson::object();
   for (const auto& [name, configuration] : model.trackers) json["trackers"][name] = configuration;
+  if (model.frame != Frame::state) json["frame"] = std::string(to_string(model.frame));
+  if (model.output_in_sigma) json["output_in"] = kSigma;
   json["features"] = OrderedJson::array();
   for (const FeatureSpec& feature : model.features) json["features"].push_back(feature_json(feature));
   json["normalisation"] = {{"input_mean", array_json(parameters.input_mean)},
@@ -243,14 +285,23 @@ std::string model_text(const CorrectionModel& model) {
                     {"edge_fraction", model.gate->edge_fraction},
                     {"largest_disagreement", limit_json(model.gate->largest_disagreement)},
                     {"disagreement_edge_fraction", model.gate->disagreement_edge_fraction}};
+  if (model.referee)
+    json["referee"] = {
+        {"alpha", model.referee->alpha}, {"tolerance", model.referee->tolerance}, {"edge", model.referee->edge}};
+  if (model.moments.size() > 0) json["covariance"] = kMoments;
   json["rules"] = OrderedJson::array();
-  for (Eigen::Index j = 0; j < parameters.centres.rows(); ++j)
-    json["rules"].push_back({{"centre", array_json(parameters.centres.row(j))},
-                             {"width", array_json(parameters.widths.row(j))},
-                             {"consequent", array_json(parameters.consequents.row(j))},
-                             {"inflation", model.inflation[j]},
-                             {"usage", model.usage[j]},
-                             {"local_mean", array_json(model.local_mean.row(j))}});
+  for (Eigen::Index j = 0; j < parameters.centres.rows(); ++j) {
+    OrderedJson rule{{"centre", array_json(parameters.centres.row(j))},
+                     {"width", array_json(parameters.widths.row(j))},
+                     {"consequent", array_json(parameters.consequents.row(j))}};
+    if (model.moments.size() > 0)
+      rule["moments"] = array_json(model.moments.row(j));
+    else
+      rule["inflation"] = model.inflation[j];
+    rule["usage"] = model.usage[j];
+    rule["local_mean"] = array_json(model.local_mean.row(j));
+    json["rules"].push_back(std::move(rule));
+  }
   json["provenance"] = OrderedJson::object();
   for (const auto& [key, value] : model.provenance) json["provenance"][key] = value;
   return json_text(json);

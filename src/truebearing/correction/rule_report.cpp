@@ -19,11 +19,20 @@ std::string amount(double value) {
   return std::abs(value) >= 100.0 ? fmt::format("{:+.0f}", value) : fmt::format("{:+.3g}", value);
 }
 
-std::string amounts(const StateSpace& space, const Eigen::VectorXd& values) {
+// Corrections in words: "+12 m, -3 m/s" on a line; in the track frame each with its direction.
+std::string amounts(const CorrectionModel& model, const Eigen::VectorXd& values) {
+  const StateSpace& space = space_in(model.frame, *model.space);
   std::string text;
-  for (int i = 0; i < space.size(); ++i)
-    text += fmt::format("{}{} {}", i == 0 ? "" : ", ", amount(values[i]),
-                        unit_of(space.components[static_cast<std::size_t>(i)]));
+  for (int i = 0; i < space.size(); ++i) {
+    const std::string& component = space.components[static_cast<std::size_t>(i)];
+    text += fmt::format("{}{} ", i == 0 ? "" : ", ", amount(values[i]));
+    if (model.output_in_sigma)
+      text += fmt::format("sigma of {}", component);
+    else if (model.frame == Frame::track)
+      text += fmt::format("{} {}", unit_of(component), component.substr(0, component.find('_')));
+    else
+      text += unit_of(component);
+  }
   return text;
 }
 
@@ -52,17 +61,17 @@ std::string rule_sentences(const CorrectionModel& model) {
   for (const Eigen::Index rule : order) {
     std::string conditions;
     for (std::size_t i = 0; i < model.features.size(); ++i)
-      conditions += fmt::format(
-          "{}{} is {}", i == 0 ? "" : " AND ", describe(model.features[i]),
-          term_word(parameters.centres(rule, static_cast<Eigen::Index>(i)), mirror_parity(model.features[i].kind)));
+      conditions += fmt::format("{}{} is {}", i == 0 ? "" : " AND ", describe(model.features[i]),
+                                term_word(parameters.centres(rule, static_cast<Eigen::Index>(i)),
+                                          mirror_parity(model.features[i], model.frame, *model.space)));
     const FuzzyNetwork::Inputs centre =
         (parameters.input_mean.array() +
          parameters.centres.row(rule).transpose().array() * parameters.input_scale.array())
             .matrix();
     model.network.strengths(centre, phi);
     text += fmt::format("{}. IF {} THEN add {}   (usage {:.1f} %, teacher's mean {})\n", ++number, conditions,
-                        amounts(*model.space, model.network.output(phi)), 100.0 * model.usage[rule],
-                        amounts(*model.space, model.local_mean.row(rule).transpose()));
+                        amounts(model, model.network.output(phi)), 100.0 * model.usage[rule],
+                        amounts(model, model.local_mean.row(rule).transpose()));
   }
   return text;
 }

@@ -11,14 +11,43 @@ FeatureSpec read_feature(TableReader& table) {
   FeatureSpec feature;
   feature.kind = feature_kind(table.choice("kind", feature_kind_names()));
   const FeatureNeeds needs = needs_of(feature.kind);
-  if (needs.component) feature.component = table.text("component");
+  if (needs.component == FeatureNeeds::Component::required) feature.component = table.text("component");
+  if (needs.component == FeatureNeeds::Component::optional) feature.component = table.text_or("component", "");
   if (needs.companion == FeatureNeeds::Companion::required) feature.companion = table.text("companion");
   if (needs.companion == FeatureNeeds::Companion::optional) feature.companion = table.text_or("companion", "");
   if (needs.alpha) feature.alpha = table.number("alpha", {0.0, 1.0, true});
   if (needs.offset) feature.offset = table.number("offset", kPositive);
-  if (needs.scale) feature.scale = table.number("scale", kPositive);
+  if (const toml::node* scale = needs.scale ? table.node("scale") : nullptr; scale && scale->is_string())
+    feature.scale_is_sigma = table.choice("scale", {"sigma"}) == "sigma";
+  else if (needs.scale)
+    feature.scale = table.number("scale", kPositive);
+  if (needs.mode) feature.mode = static_cast<int>(table.integer("mode", 1, kMaxDimension));
   table.finish();
   return feature;
+}
+
+// mirror = true (images), false, or "pairs".
+TrainingSpec::Mirror read_mirror(TableReader& table) {
+  const toml::node* node = table.node("mirror");
+  if (node && node->is_string()) {
+    table.choice("mirror", {"pairs"});
+    return TrainingSpec::Mirror::pairs;
+  }
+  return table.boolean_or("mirror", false) ? TrainingSpec::Mirror::images : TrainingSpec::Mirror::none;
+}
+
+// referee = true, false, or { alpha, tolerance, edge }.
+std::optional<RefereeOptions> read_referee(TableReader& table) {
+  RefereeOptions referee;
+  const toml::node* node = table.node("referee");
+  if (!node || node->is_boolean())
+    return table.boolean_or("referee", false) ? std::optional<RefereeOptions>(referee) : std::nullopt;
+  TableReader sub = table.table("referee");
+  referee.alpha = sub.number_or("alpha", referee.alpha, {0.0, 1.0, true});
+  referee.tolerance = sub.number_or("tolerance", referee.tolerance, kPositive);
+  referee.edge = sub.number_or("edge", referee.edge, kPositive);
+  sub.finish();
+  return referee;
 }
 
 TrainingSpec read_training(TableReader& table) {
@@ -27,14 +56,20 @@ TrainingSpec read_training(TableReader& table) {
       table.choice_or("method", {"variable_projection", "back_propagation"}, "variable_projection");
   training.runs = static_cast<std::size_t>(table.integer("runs", 1, 1000000));
   training.from_step = static_cast<int>(table.integer_or("from_step", 1, 1, 1000000));
-  training.mirror = table.boolean_or("mirror", false);
+  training.mirror = read_mirror(table);
+  if (table.has("scenario")) training.scenario = table.resolve(table.text("scenario"));
+  if (table.has("covariance_scenario")) training.covariance_scenario = table.resolve(table.text("covariance_scenario"));
   training.learning_rate = table.number_or("learning_rate", 0.05, {0.0, 1.0, true});
   if (method == "variable_projection") {
     training.rules = static_cast<int>(table.integer("rules", 1, 256));
+    if (training.mirror == TrainingSpec::Mirror::pairs && training.rules % 2 != 0)
+      throw table.error("rules", "is odd", "an even number, for rules in mirror pairs");
     training.iterations = static_cast<int>(table.integer_or("iterations", training.iterations, 0, 100000));
     training.ridge = table.number_or("ridge", training.ridge, kPositive);
   } else {
     training.method = TrainingSpec::Method::back_propagation;
+    if (training.mirror == TrainingSpec::Mirror::pairs)
+      throw table.error("mirror", "is \"pairs\"", "true or false with method = \"back_propagation\"");
     training.terms_per_input = static_cast<int>(table.integer_or("terms_per_input", training.terms_per_input, 2, 9));
     training.epochs = static_cast<int>(table.integer_or("epochs", training.epochs, 1, 1000000));
     training.momentum = table.number_or("momentum", 0.0, {0.0, 0.999});
@@ -79,6 +114,10 @@ CorrectionSpec read_correction_spec(TableReader& table) {
   spec.covariance_of = table.text_or("covariance_of", spec.base);
   spec.kappa = table.number_or("kappa", kInfinity, kPositive);
   spec.gate = read_gate(table);
+  spec.referee = read_referee(table);
+  spec.frame = table.choice_or("frame", {"state", "track"}, "state") == "track" ? Frame::track : Frame::state;
+  spec.output_in_sigma = table.choice_or("output_in", {"units", "sigma"}, "units") == "sigma";
+  spec.covariance_moments = table.choice_or("covariance", {"inflation", "moments"}, "inflation") == "moments";
   spec.model = table.resolve(table.text("model"));
   for (TableReader& feature : table.tables("features")) spec.features.push_back(read_feature(feature));
   if (spec.features.empty())

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "truebearing/correction/feature.hpp"
+#include "truebearing/correction/referee.hpp"
 #include "truebearing/io/table_reader.hpp"
 
 namespace truebearing {
@@ -22,15 +23,23 @@ struct TrainingSpec {
   };
   Method method = Method::variable_projection;
   std::size_t runs = 400;
-  int from_step = 1;    ///< number of the first step taught, counted from 1
-  bool mirror = false;  ///< teach every run and its mirror image
-  int rules = 16;       ///< variable projection
+  int from_step = 1;  ///< number of the first step taught, counted from 1
+  enum class Mirror {
+    none,
+    images,  ///< teach every run and its mirror image
+    pairs    ///< rules come in pairs that mirror each other: the symmetry holds to the bit, for half the parameters
+  };
+  Mirror mirror = Mirror::none;
+  int rules = 16;  ///< variable projection
   int iterations = 150;
   double learning_rate = 0.05;
   double ridge = 1e-3;
   int terms_per_input = 3;  ///< back-propagation
   int epochs = 300;
   double momentum = 0.0;
+  std::optional<std::filesystem::path> scenario;  ///< what is taught; the study's own where absent
+  /// Where given, the covariance head and the box of the gate are fitted to this (wider) scenario instead.
+  std::optional<std::filesystem::path> covariance_scenario;
 };
 
 struct GateSpec {
@@ -47,6 +56,10 @@ struct CorrectionSpec {
   std::string covariance_of;
   double kappa = std::numeric_limits<double>::infinity();
   std::optional<GateSpec> gate;
+  std::optional<RefereeOptions> referee;
+  Frame frame = Frame::state;
+  bool output_in_sigma = false;
+  bool covariance_moments = false;  ///< covariance head: residual moments per rule, not one inflation
   std::vector<FeatureSpec> features;
   std::filesystem::path model;
   TrainingSpec training;

@@ -81,6 +81,23 @@ std::vector<double> numbers_at(const toml::table& table, const std::string& path
 }
 
 void put_numbers(toml::table& table, const std::string& path, const std::vector<double>& values) {
+  // An element of an array, or a table inside one, exists: tuned numbers replace numbers. Anything else is made.
+  if (path.find('[') != std::string::npos) {
+    if (auto node = table.at_path(path)) {
+      if (auto* array = node.as_array()) {
+        array->clear();
+        for (const double value : values) array->push_back(value);
+        return;
+      }
+      const std::size_t dot = path.rfind('.');
+      if (dot != std::string::npos)
+        if (auto* parent = table.at_path(path.substr(0, dot)).as_table()) {
+          parent->insert_or_assign(path.substr(dot + 1), values.front());
+          return;
+        }
+    }
+    throw InputError(path, "is no number of the tracker");
+  }
   toml::table* parent = &table;
   std::size_t begin = 0;
   for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', begin)) {

@@ -194,7 +194,7 @@ void Study::check_trackers() {
       return truebearing::make_tracker(member.kind, reader);
     };
     try {
-      FeatureExtractor(spec.correction->features, made("")->space(),
+      FeatureExtractor(spec.correction->features, made("")->space(), spec.correction->frame,
                        [&](const std::string& name) { return made(name)->blocks(); });
     } catch (const InputError& error) {
       throw InputError(path_.string() + ": trackers." + spec.name + ": " + error.where(), error.found(), error.valid());
@@ -303,6 +303,10 @@ void Study::check_model(const std::string& name, const CorrectionModel& model, c
   const std::string remedy = fmt::format("run `truebearing train {}`", path_.string());
   const auto differs = [&](const std::string& what) { return InputError(where, "was trained for " + what, remedy); };
   if (model.features != spec.features) throw differs("other features than the study has for \"" + name + "\"");
+  if (model.frame != spec.frame || model.output_in_sigma != spec.output_in_sigma)
+    throw differs("another frame or scale of the output");
+  if (model.referee != spec.referee || (model.moments.size() > 0) != spec.covariance_moments)
+    throw differs("another referee or covariance head");
   if (model.base != spec.base || model.reference != spec.reference || model.covariance_of != spec.covariance_of)
     throw differs("another base, reference or covariance_of");
   if (model.kappa != spec.kappa)

@@ -1,0 +1,87 @@
+// The frame that a correction works in. Where a target flies to does not matter to how a filter lags behind it: in the
+// track frame errors and innovations are along and across the base's estimated velocity, so that what was learnt on one
+// course holds on all of them.
+#pragma once
+
+#include <Eigen/Core>
+#include <string_view>
+
+#include "truebearing/core/bounded.hpp"
+#include "truebearing/core/state_space.hpp"
+
+namespace truebearing {
+
+enum class Frame {
+  state,  ///< the state's own components
+  track   ///< plane space only: [along_m, cross_m, along_mps, cross_mps], cross to starboard
+};
+
+/// Names of the components of a state in that frame.
+const StateSpace& space_in(Frame frame, const StateSpace& space);
+
+/// +1 where the component of a state stays as it is for a mirrored target, -1 where it changes sign. In the track frame
+/// the mirror stands along the track; in the state's own every component changes sign.
+inline int component_parity(Frame frame, int component) {
+  return frame == Frame::track && component % 2 == 0 ? +1 : -1;
+}
+
+/// The rotation into a frame, for one estimate.
+class FrameRotation {
+ public:
+  FrameRotation() = default;
+  /// x (n): the estimate whose velocity is the track. One that stands still is taken to head North.
+  FrameRotation(Frame frame, const BoundedVector& x) : rotates_(frame == Frame::track) {
+    if (!rotates_) return;
+    const Eigen::Vector2d v = x.tail<2>();
+    const double speed = v.stableNorm();
+    along_ = speed > 0.0 ? Eigen::Vector2d(v / speed) : Eigen::Vector2d(0.0, 1.0);
+  }
+
+  /// A state, or a position (the first half of one), in the frame. The way back is the same.
+  template <typename Derived>
+  BoundedVector vector(const Eigen::MatrixBase<Derived>& x) const {
+    BoundedVector turned = x;
+    if (rotates_)
+      for (Eigen::Index i = 0; i < turned.size(); i += 2) turned.segment<2>(i) = turn(turned.segment<2>(i));
+    return turned;
+  }
+  /// One component of vector(x).
+  template <typename Derived>
+  double component(const Eigen::MatrixBase<Derived>& x, Eigen::Index i) const {
+    if (!rotates_) return x[i];
+    const Eigen::Index first = i - i % 2;
+    return i == first ? along_.x() * x[first] + along_.y() * x[first + 1]
+                      : along_.y() * x[first] - along_.x() * x[first + 1];
+  }
+  /// A covariance of states in the frame, and back.
+  BoundedMatrix covariance(const BoundedMatrix& P) const {
+    if (!rotates_) return P;
+    BoundedMatrix turned(P.rows(), P.cols());
+    for (Eigen::Index j = 0; j < P.cols(); j += 2)
+      for (Eigen::Index i = 0; i < P.rows(); i += 2) {
+        const Eigen::Vector2d a = turn({P(i, j), P(i + 1, j)}), b = turn({P(i, j + 1), P(i + 1, j + 1)});
+        const Eigen::Vector2d top = turn({a[0], b[0]}), bottom = turn({a[1], b[1]});
+        turned(i, j) = top[0];
+        turned(i, j + 1) = top[1];
+        turned(i + 1, j) = bottom[0];
+        turned(i + 1, j + 1) = bottom[1];
+      }
+    return turned;
+  }
+  bool rotates() const { return rotates_; }
+  const Eigen::Vector2d& along() const { return along_; }
+
+ private:
+  // [u'; s'] with u along and s = (u_y, -u_x) to starboard: symmetric and its own inverse.
+  Eigen::Vector2d turn(const Eigen::Vector2d& p) const {
+    return {along_.x() * p.x() + along_.y() * p.y(), along_.y() * p.x() - along_.x() * p.y()};
+  }
+
+  bool rotates_ = false;
+  Eigen::Vector2d along_{0.0, 1.0};
+};
+
+/// "state" or "track".
+std::string_view to_string(Frame frame);
+
+}  // namespace truebearing

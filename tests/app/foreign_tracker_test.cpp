@@ -1,5 +1,5 @@
 // A tracker that is not ours, OpenCV's Kalman filter, is corrected from its step logs alone: train, track and compare,
-// as its owner would.
+// as its owner would. Its targets are those of manoeuvre_2d.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,26 +20,6 @@ namespace {
 
 using nlohmann::json;
 using testing::TemporaryFolder;
-
-// What happens before the foreign tracker: manoeuvring targets, which its owner has recorded with truth.
-const std::string kTargets = R"(kind = "planar_flight"
-output = "plane"
-period_s = 1.0
-steps = 120
-
-[flight]
-speed_mps = { uniform = [150.0, 350.0] }
-leg_s = { uniform = [10.0, 40.0] }
-turn_s = { uniform = [8.0, 30.0] }
-turn_rate_degps = { uniform = [1.0, 6.0] }
-roll_in_s = 1.0
-
-[site]
-closest_m = 0.0
-
-[sensor]
-position_sigma_m = 100.0
-)";
 
 constexpr double kSigma_m = 100.0;
 constexpr double kSigmaA_mps2 = 8.0;
@@ -126,24 +106,22 @@ kind = "recorded"
 components = ["east_m", "north_m", "east_mps", "north_mps"]
 innovation = true
 
-[trackers.wide]
-kind = "kalman"
-show = false
-space = "plane"
-motion = { model = "constant_velocity", noise = "discrete", sigma_a_mps2 = 30.0 }
-measurement = { model = "position", sigma_m = 100.0 }
-start = { kind = "two_point" }
-
 [trackers.corrected]
 kind = "corrected"
 base = "foreign"
 kappa = 3.0
+frame = "track"
+covariance = "moments"
 model = "foreign.nfnn.json"
 features = [
-  { kind = "companion_difference", companion = "wide", component = "east_m", scale = 50.0 },
-  { kind = "companion_difference", companion = "wide", component = "north_m", scale = 50.0 },
-  { kind = "companion_difference", companion = "wide", component = "east_mps", scale = 50.0 },
-  { kind = "companion_difference", companion = "wide", component = "north_mps", scale = 50.0 },
+  { kind = "innovation", component = "along_m" },
+  { kind = "innovation", component = "cross_m" },
+  { kind = "innovation_average", component = "along_m", alpha = 0.5 },
+  { kind = "innovation_average", component = "cross_m", alpha = 0.5 },
+  { kind = "innovation_average", component = "along_m", alpha = 0.2 },
+  { kind = "innovation_average", component = "cross_m", alpha = 0.2 },
+  { kind = "innovation_average", component = "along_m", alpha = 0.08 },
+  { kind = "innovation_average", component = "cross_m", alpha = 0.08 },
 ]
 
 [trackers.corrected.training]
@@ -151,11 +129,11 @@ rules = 32
 runs = 60
 from_step = 8
 iterations = 60
-mirror = true
+mirror = "pairs"
 )";
 
 void write_logs(const TemporaryFolder& folder, const std::string& name, Role role, std::uint64_t count, bool truth) {
-  const auto targets = load_scenario(folder.write("targets.toml", kTargets));
+  const auto targets = load_scenario(TRUEBEARING_SOURCE_DIR "/data/scenarios/manoeuvre_2d.toml");
   for (std::uint64_t run = 0; run < count; ++run)
     folder.write(fmt::format("{}/run_{:02}.csv", name, run),
                  ForeignTracker().log(targets->simulate({21, role, run}), truth));

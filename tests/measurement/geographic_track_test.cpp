@@ -82,6 +82,18 @@ TEST(GeographicTrack, OtherColumnsArePassedOver) {
   EXPECT_NEAR(read(text).recordings.at(0).truth[0].x[10](3), kStep_m, 0.01) << "not the track angle of the file";
 }
 
+TEST(GeographicTrack, RecordedVelocityIsTheTruthOnRequestWhereTheFileHasIt) {
+  std::string text = "time_s,latitude_deg,longitude_deg,groundspeed_kn,track_deg\n";
+  for (int k = 0; k <= 30; ++k)
+    text += fmt::format("{},{},7.5,{},90\n", k, kLatitude_deg + kStep_deg * k, k == 12 ? "" : "100");
+  const Recording recording = read(text, {.recorded_velocity = true}).recordings.at(0);
+  EXPECT_NEAR(recording.truth[0].x[10](2), 100.0 * 1852.0 / 3600.0, 1e-9) << "East, in m/s";
+  EXPECT_NEAR(recording.truth[0].x[10](3), 0.0, 1e-9);
+  EXPECT_FALSE(is_scored(recording, 12));
+  EXPECT_NEAR(read(northbound(), {.recorded_velocity = true}).recordings.at(0).truth[0].x[10](3), kStep_m, 0.01)
+      << "the slope, where the file has no velocity";
+}
+
 TEST(GeographicTrack, GlitchIsMissingAndCounted) {
   const std::string text = northbound({{10, row(10, 14)}, {11, row(11, 15)}});
   const Recording recording = read(text, {.max_speed_mps = 150.0}).recordings.at(0);

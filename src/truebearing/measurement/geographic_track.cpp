@@ -223,9 +223,8 @@ Recording make_recording(const Target& target, const GeographicTrackOptions& opt
 
 GeographicTracks read_tracks(CsvReader csv, const GeographicTrackOptions& options) {
   GeographicTracks tracks;
-  if (options.recorded_velocity && read_layout(csv).speed < 0)
-    throw InputError(csv.name(), "records no velocity",
-                     "columns groundspeed_kn and track_deg, or speed_kn and course_deg");
+  GeographicTrackOptions believed = options;
+  believed.recorded_velocity &= read_layout(csv).speed >= 0;
   for (Target& target : read_targets(csv)) {
     remove_glitches(target, options.max_speed_mps);
     const auto usable =
@@ -233,7 +232,7 @@ GeographicTracks read_tracks(CsvReader csv, const GeographicTrackOptions& option
     if (usable < kFewestRows)
       ++tracks.left_out;
     else
-      tracks.recordings.push_back(make_recording(target, options));
+      tracks.recordings.push_back(make_recording(target, believed));
   }
   if (tracks.recordings.empty())
     throw InputError(csv.name(), "has no track to follow", fmt::format("at least {} usable rows of one", kFewestRows));

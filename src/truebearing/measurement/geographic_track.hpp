@@ -23,8 +23,8 @@ struct GeographicTrackOptions {
   double max_speed_mps = std::numeric_limits<double>::infinity();
   /// Slower than this, the truth is NaN: measured, but not scored.
   double min_speed_mps = 0.0;
-  /// True velocity from the columns groundspeed_kn and track_deg, or speed_kn and course_deg, in place of the slope of
-  /// the positions; missing where a row has none.
+  /// True velocity from the columns groundspeed_kn and track_deg, or speed_kn and course_deg, where the file has them,
+  /// in place of the slope of the positions; missing where a row has none.
   bool recorded_velocity = false;
   /// The first step after a gap of more than that many median periods has no truth either.
   double max_gap_periods = std::numeric_limits<double>::infinity();

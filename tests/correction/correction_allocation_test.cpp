@@ -7,6 +7,7 @@
 #include "tests/support/allocation_count.hpp"
 #include "tests/support/correction_models.hpp"
 #include "tests/support/line_trackers.hpp"
+#include "tests/support/plane_trackers.hpp"
 #include "truebearing/correction/corrected_tracker.hpp"
 #include "truebearing/evaluation/tracker_set.hpp"
 #include "truebearing/tracker/filter_bank.hpp"
@@ -106,6 +107,16 @@ TEST(FilterBank, StepsAllocateNothing) {
   const RadarFilter radar;
   Bank bank(line_space(), {10, Bank::Hypothesis{radar.filter(), radar.motion(), radar.sensor()}});
   EXPECT_EQ(allocations_of_second_pass(bank), 0);
+}
+
+TEST(CorrectedTracker, StepsInThePlaneAllocateNothing) {
+  CorrectedTracker tracker(testing::plane_ensemble(), testing::shared(testing::plane_model(1)));
+  const std::vector<Measurement> log = testing::plane_log(1, 100);
+  for (int k = 0; k < 5; ++k) tracker.step(log[static_cast<std::size_t>(k)]);
+  EXPECT_EQ(allocations_of([&] {
+              for (std::size_t k = 5; k < log.size(); ++k) tracker.step(log[k]);
+            }),
+            0);
 }
 
 // A tracker that allocates in its steps must be caught, wherever it sits.

@@ -71,6 +71,19 @@ TEST(Summary, FiguresByHand) {
   EXPECT_EQ(summary.quantity("height_m"), nullptr);
 }
 
+TEST(Summary, PhasesAreScoredApart) {
+  std::vector<RunScore> runs{run({3.0, 4.0, kNaN}, {1.0, 1.0, kNaN}, {1.0, 7.0, kNaN}),
+                             run({1.0, 2.0, 2.0}, {1.0, 3.0, 5.0}, {4.0, 1.0, 9.0})};
+  runs[0].phase = {0, 1, 1};
+  runs[1].phase = {0, 1, 0};
+  const TrackerSummary summary = summarise("t", kScorer, pointers(runs), {});
+  const std::vector<QuantitySummary::Phase>& position = summary.quantity("position_m")->phases;
+  ASSERT_EQ(position.size(), 2u);
+  EXPECT_DOUBLE_EQ(position[0].rmse, std::sqrt((9.0 + 1.0 + 4.0) / 3.0));
+  EXPECT_DOUBLE_EQ(position[1].rmse, std::sqrt((16.0 + 4.0) / 2.0));
+  EXPECT_DOUBLE_EQ(summary.quantity("position_m")->coverage95, 2.0 / 5.0) << "7, 4 and 9 are beyond 3.84";
+}
+
 TEST(Summary, MedianOfAnEvenNumberIsTheMiddle) {
   const std::vector<RunScore> runs{run({9.0, 1.0}, {0.0, 0.0}, {1.0, 1.0}), run({2.0, 4.0}, {0.0, 0.0}, {1.0, 1.0})};
   EXPECT_DOUBLE_EQ(summarise("t", kScorer, pointers(runs), {}).quantity("position_m")->median, 3.0);

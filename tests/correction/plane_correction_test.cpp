@@ -1,0 +1,99 @@
+// A correction in the plane, whole: track frame, outputs in standard deviations, residual moments, gate, referee,
+// kappa.
+#include <gtest/gtest.h>
+
+#include "tests/support/plane_trackers.hpp"
+#include "truebearing/core/covariance.hpp"
+#include "truebearing/correction/model_file.hpp"
+
+namespace truebearing {
+namespace {
+
+using testing::plane_ensemble;
+using testing::plane_log;
+using testing::plane_model;
+
+CorrectedTracker corrected(CorrectionModel model) {
+  return {plane_ensemble(), testing::shared(std::move(model))};
+}
+
+TEST(PlaneCorrection, TurnsWithTheTarget) {
+  const Eigen::Matrix2d R{{0.6, 0.8}, {-0.8, 0.6}};
+  Eigen::Matrix4d R4 = Eigen::Matrix4d::Zero();
+  R4.topLeftCorner<2, 2>() = R4.bottomRightCorner<2, 2>() = R;
+  CorrectedTracker tracker = corrected(plane_model(1)), turned = corrected(plane_model(1));
+  double moved = 0.0;
+  for (const Measurement& measurement : plane_log(2, 120)) {
+    Measurement other = measurement;
+    other.z = R * measurement.z;
+    const auto a = tracker.step(measurement), b = turned.step(other);
+    ASSERT_EQ(a.size(), b.size());
+    if (a.empty()) continue;
+    EXPECT_LT((b[0].x - R4 * a[0].x).norm(), 1e-8 * a[0].x.norm());
+    EXPECT_LT((b[0].P - R4 * a[0].P * R4.transpose()).norm(), 1e-8 * a[0].P.norm());
+    moved = std::max(moved, a[0].correction->distance_sigmas);
+  }
+  EXPECT_GT(moved, 0.1) << "there was a correction to turn";
+}
+
+TEST(PlaneCorrection, StaysWithinKappaAndPublishesACovarianceWhateverTheNetworkSays) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    CorrectionModel model = plane_model(seed, std::pow(10.0, static_cast<double>(seed % 7)));
+    model.gate.reset();
+    CorrectedTracker tracker = corrected(model);
+    Ensemble ensemble = plane_ensemble();
+    for (const Measurement& measurement : plane_log(seed, 60)) {
+      ensemble.step(measurement);
+      const auto records = tracker.step(measurement);
+      if (records.empty()) continue;
+      const StepRecord& reference = ensemble.records(ensemble.index("tuned"))[0];
+      const double squared = mahalanobis_squared(reference.P, BoundedVector(records[0].x - reference.x));
+      EXPECT_LE(std::sqrt(squared), 3.0 * (1.0 + 1e-9));
+      EXPECT_TRUE(is_covariance(records[0].P));
+    }
+  }
+}
+
+TEST(PlaneCorrection, RefereeTakesTheWeightFromANetworkThatIsWrong) {
+  CorrectionModel model = plane_model(3, 5.0);
+  model.gate.reset();
+  CorrectedTracker with = corrected(model);
+  model.referee.reset();
+  CorrectedTracker without = corrected(model);
+  double gate = 1.0;
+  for (const Measurement& measurement : plane_log(4, 300)) {
+    const auto a = with.step(measurement), b = without.step(measurement);
+    if (a.empty()) continue;
+    gate = a[0].correction->gate;
+    EXPECT_EQ(b[0].correction->gate, 1.0);
+  }
+  EXPECT_LT(gate, 0.01);
+}
+
+TEST(PlaneCorrection, ModelFileKeepsEverything) {
+  const CorrectionModel model = plane_model(5);
+  const std::string saved = model_text(model);
+  const CorrectionModel loaded = parse_model(saved, "model.json");
+  EXPECT_EQ(model_text(loaded), saved);
+  EXPECT_EQ(loaded.frame, Frame::track);
+  EXPECT_TRUE(loaded.output_in_sigma);
+  EXPECT_EQ(loaded.features, model.features);
+  EXPECT_EQ(loaded.referee, model.referee);
+  EXPECT_EQ(loaded.moments, model.moments);
+  EXPECT_EQ(loaded.inflation.size(), 0);
+}
+
+TEST(PlaneCorrection, MomentsThatAreNoCovarianceAreRefused) {
+  CorrectionModel model = plane_model(6);
+  model.moments(2, 0) = -1.0;
+  EXPECT_THROW(model.validate(), InputError);
+  model = plane_model(6);
+  model.inflation = Eigen::VectorXd::Ones(8);
+  EXPECT_THROW(model.validate(), InputError);
+  model = plane_model(6);
+  model.referee->edge = 0.0;
+  EXPECT_THROW(model.validate(), InputError);
+}
+
+}  // namespace
+}  // namespace truebearing

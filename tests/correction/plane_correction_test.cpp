@@ -4,6 +4,7 @@
 
 #include "tests/support/plane_trackers.hpp"
 #include "truebearing/core/covariance.hpp"
+#include "truebearing/core/error.hpp"
 #include "truebearing/correction/model_file.hpp"
 
 namespace truebearing {

@@ -97,8 +97,8 @@ void expect_flight(const std::string& study_name, const std::string& file, doubl
   const auto ratio = [&](const char* quantity) {
     return comparison.tracker("nfnn")->quantity(quantity)->rmse / comparison.tracker("tuned")->quantity(quantity)->rmse;
   };
-  EXPECT_LT(ratio("position_m"), position_ratio + 0.01);  // two noise seeds; each flight is thousands of steps
-  EXPECT_LT(ratio("velocity_mps"), velocity_ratio + 0.01);
+  EXPECT_LT(ratio("position_m"), position_ratio + 0.01);  // two noise seeds of thousands of steps: +-.004
+  EXPECT_LT(ratio("velocity_mps"), velocity_ratio);
 }
 
 TEST(RecordedFlight, AjaccioIsTrackedBetterThanByTheTunedFilter) {
@@ -106,7 +106,7 @@ TEST(RecordedFlight, AjaccioIsTrackedBetterThanByTheTunedFilter) {
 }
 
 TEST(RecordedFlight, BelevingsvluchtIsTrackedBetterThanByTheTunedFilter) {
-  expect_flight("flight_belevingsvlucht", "flight_belevingsvlucht.csv", 0.92, 0.95);
+  expect_flight("flight_belevingsvlucht", "flight_belevingsvlucht.csv", 0.92, 0.82);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "tests/app/program.hpp"
+#include "tests/support/flight_study.hpp"
 #include "truebearing/tracker/step_log.hpp"
 
 namespace truebearing {
@@ -15,6 +16,7 @@ using nlohmann::json;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using testing::is_one_line;
+using testing::kFlightStudy;
 using testing::kStudy;
 using testing::Outcome;
 using testing::replaced;
@@ -226,34 +228,10 @@ TEST(Program, OutputThatCannotBeWrittenIsStatus1) {
   }
 }
 
-const std::string kPlaneStudy = R"(name = "flight"
-runs = 4
-
-[recorded]
-position_sigma_m = 50.0
-max_speed_mps = 400.0
-
-[scenario]
-kind = "planar_flight"
-output = "plane"
-period_s = 1.0
-steps = 5
-flight = { speed_mps = 100.0, leg_s = 20.0, turn_s = 20.0, turn_rate_degps = 3.0, roll_in_s = 3.0 }
-site = { closest_m = 0.0 }
-sensor = { position_sigma_m = 50.0 }
-
-[trackers.filter]
-kind = "kalman"
-space = "plane"
-motion = { model = "constant_velocity", noise = "discrete", sigma_a_mps2 = 3.0 }
-measurement = { model = "position", sigma_m = 50.0 }
-start = { kind = "two_point" }
-)";
-
 TEST(Program, ComparesOnRecordedPositions) {
   const TemporaryFolder folder;
-  folder.write("flight.toml", kPlaneStudy);
-  folder.write("bare.toml", replaced(kPlaneStudy, "[recorded]\nposition_sigma_m = 50.0\nmax_speed_mps = 400.0\n", ""));
+  folder.write("flight.toml", kFlightStudy);
+  folder.write("bare.toml", replaced(kFlightStudy, "[recorded]\nposition_sigma_m = 50.0\nmax_speed_mps = 400.0\n", ""));
   std::ostringstream track;
   track << "time_s,latitude_deg,longitude_deg\n";
   for (int k = 0; k < 30; ++k) track << k << ',' << (k == 20 ? 46.0 : 45.0 + 0.001 * k) << ",7.5\n";
@@ -261,7 +239,7 @@ TEST(Program, ComparesOnRecordedPositions) {
   const Outcome compared = run(folder, "compare flight.toml --truth track.csv --json report.json");
   EXPECT_EQ(compared.status, 0) << compared.err;
   EXPECT_THAT(compared.out, HasSubstr("track.csv: tracks: 1; 30 measurements, 1 missing, 1 of them glitches"));
-  const double rmse_m = json::parse(folder.read("report.json"))["trackers"]["filter"]["rmse"]["position_m"];
+  const double rmse_m = json::parse(folder.read("report.json"))["trackers"]["plain"]["rmse"]["position_m"];
   EXPECT_GT(rmse_m, 10.0);
   EXPECT_LT(rmse_m, 50.0 * std::sqrt(2.0)) << "better than the measurements";
 

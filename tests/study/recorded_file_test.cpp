@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "tests/support/error_message.hpp"
+#include "tests/support/flight_study.hpp"
 #include "tests/support/radar_study.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "truebearing/study/study.hpp"
@@ -19,32 +20,8 @@ using ::testing::HasSubstr;
 using testing::replaced;
 using testing::TemporaryFolder;
 
-const std::string kPlaneStudy = R"(name = "flight"
-
-[recorded]
-position_sigma_m = 50.0
-max_speed_mps = 400.0
-
-[sets]
-one = "one.csv"
-two = "folder/two.csv"
-
-[scenario]
-kind = "planar_flight"
-output = "plane"
-period_s = 1.0
-steps = 5
-flight = { speed_mps = 100.0, leg_s = 20.0, turn_s = 20.0, turn_rate_degps = 3.0, roll_in_s = 3.0 }
-site = { closest_m = 0.0 }
-sensor = { position_sigma_m = 50.0 }
-
-[trackers.plain]
-kind = "kalman"
-space = "plane"
-motion = { model = "constant_velocity", noise = "discrete", sigma_a_mps2 = 3.0 }
-measurement = { model = "position", sigma_m = 50.0 }
-start = { kind = "two_point" }
-)";
+const std::string kPlaneStudy =
+    replaced(testing::kFlightStudy, "[scenario]", "[sets]\none = \"one.csv\"\ntwo = \"folder/two.csv\"\n\n[scenario]");
 
 std::string flight(int rows, double latitude_deg) {
   std::string text = "time_s,latitude_deg,longitude_deg,altitude_ft\n";

@@ -1,14 +1,16 @@
-// truebearing simulate SCENARIO.toml --seed S --runs N -o DIR: measurement logs with truth.
+// truebearing simulate SCENARIO.toml --seed S --runs N -o DIR [--track FILE --track-id K --track-from S]:
+// measurement logs with truth.
 #include <filesystem>
 #include <fmt/format.h>
 #include <memory>
+#include <optional>
 
 #include "app/output.hpp"
 #include "app/subcommands.hpp"
 #include "truebearing/core/error.hpp"
 #include "truebearing/io/file.hpp"
 #include "truebearing/measurement/recording_csv.hpp"
-#include "truebearing/simulation/scenario.hpp"
+#include "truebearing/simulation/bearings_of_track.hpp"
 
 namespace truebearing {
 namespace {
@@ -16,13 +18,27 @@ namespace {
 struct Options {
   std::string scenario;
   std::string folder;
+  std::string track;
+  std::optional<int> track_id;
+  double track_from_s = 0.0;
   std::uint64_t seed = 1;
   std::size_t runs = 1;
   bool quiet = false;
 };
 
+std::unique_ptr<Scenario> scenario_of(const Options& options) {
+  std::unique_ptr<Scenario> scenario = load_scenario(options.scenario);
+  if (options.track.empty()) return scenario;
+  const auto* bearings = dynamic_cast<const BearingsOnlyScenario*>(scenario.get());
+  if (!bearings)
+    throw InputError(options.scenario, "has no target that --track could stand for",
+                     "a scenario of kind \"bearings_only\"");
+  return std::make_unique<BearingsOfTrack>(read_target_track(options.track, options.track_id), options.track_from_s,
+                                           bearings->parameters());
+}
+
 void simulate(const Options& options) {
-  const std::unique_ptr<Scenario> scenario = load_scenario(options.scenario);
+  const std::unique_ptr<Scenario> scenario = scenario_of(options);
   std::error_code failure;
   std::filesystem::create_directories(options.folder, failure);
   if (failure) throw InputError(options.folder, "cannot be made: " + failure.message(), "a folder to write to");
@@ -44,6 +60,12 @@ void add_simulate(CLI::App& app) {
   command->add_option("-o,--output", options->folder, "folder for run_0000.csv, run_0001.csv, ...")->required();
   command->add_option("--seed", options->seed, "seed of the random streams")->capture_default_str();
   command->add_option("--runs", options->runs, "number of logs")->capture_default_str()->check(CLI::Range(1, 1000000));
+  CLI::Option* track =
+      command->add_option("--track", options->track,
+                          "a recorded track (positions, or a log with truth) as the target of a bearings_only one");
+  command->add_option("--track-id", options->track_id, "which one of the file")->needs(track);
+  command->add_option("--track-from", options->track_from_s, "time in the track, in s, at which it begins")
+      ->needs(track);
   command->add_flag("--quiet", options->quiet, "no progress");
   command->callback([options] { simulate(*options); });
 }

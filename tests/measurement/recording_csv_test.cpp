@@ -61,6 +61,24 @@ TEST(RecordingCsv, OwnShipMayBePositionOrPositionAndVelocity) {
   EXPECT_THAT(error_of(header + ",sensor_north_mps\n0,90,5,6,1\n"), HasSubstr("own-ship"));
 }
 
+TEST(RecordingCsv, AGuessStandsInTheRowsThatHaveOne) {
+  const std::string text =
+      "time_s,bearing_deg,guess_range_m,guess_range_sigma_m,guess_speed_mps,guess_speed_sigma_mps\n"
+      "0,90,5000,2000,2,1\n1,91,,,,\n";
+  const Recording recording = read(text);
+  ASSERT_TRUE(recording.measurements[0].guess);
+  EXPECT_EQ(recording.measurements[0].guess->range_m, 5000.0);
+  EXPECT_EQ(recording.measurements[0].guess->speed_sigma_mps, 1.0);
+  EXPECT_FALSE(recording.measurements[1].guess);
+  EXPECT_EQ(recording.measured.size(), 1u);
+  const Recording again = read(write_recording(recording));
+  EXPECT_EQ(again.measurements[0].guess->speed_mps, 2.0);
+  EXPECT_FALSE(again.measurements[1].guess);
+  EXPECT_THAT(error_of("time_s,bearing_deg,guess_range_m\n0,90,5000\n"), HasSubstr("guess"));
+  EXPECT_THAT(error_of("time_s,bearing_deg,guess_range_m,guess_range_sigma_m\n0,90,5000,-1\n"),
+              HasSubstr("guess_range_sigma_m"));
+}
+
 TEST(RecordingCsv, UnusableCellMakesTheMeasurementMissing) {
   for (const char* cell : {"", "nan", "inf", "-inf"}) {
     const Recording z = read("time_s,position_m\n0,1\n1," + std::string(cell) + "\n2,3\n");

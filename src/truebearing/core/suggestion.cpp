@@ -39,7 +39,7 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
 }
 
 std::string suggestion(std::string_view name, const std::vector<std::string>& valid) {
-  constexpr std::size_t kMaxListed = 12;
+  constexpr std::size_t kMaxListed = 24;
   const std::string nearest = nearest_name(name, valid);
   std::string line;
   if (!nearest.empty()) line = "did you mean \"" + nearest + "\"? one of ";

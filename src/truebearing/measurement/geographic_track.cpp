@@ -202,6 +202,7 @@ Recording make_recording(const Target& target, const GeographicTrackOptions& opt
   recording.measured = {"east_m", "north_m"};
   recording.truth_space = &plane_space();
   recording.truth.resize(1);
+  recording.truth[0].track = static_cast<int>(target.number);
   for (const Fix& fix : target.fixes) {
     Measurement measurement;
     measurement.time_s = fix.time_s;

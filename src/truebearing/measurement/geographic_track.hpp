@@ -34,8 +34,9 @@ struct GeographicTrackOptions {
 inline constexpr int kFewestRows = 20;
 
 struct GeographicTracks {
-  std::vector<Recording> recordings;  ///< one per target, in the order of their first rows
-  int left_out = 0;                   ///< targets with fewer than kFewestRows usable rows
+  /// One per target, in the order of their first rows; the track of its truth is the target's number in the file.
+  std::vector<Recording> recordings;
+  int left_out = 0;  ///< targets with fewer than kFewestRows usable rows
 };
 
 /// Is this a regular file of CSV whose header names latitude_deg? Throws InputError where it cannot be read.

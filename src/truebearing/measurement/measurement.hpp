@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <optional>
 
 #include "truebearing/core/bounded.hpp"
@@ -16,11 +17,20 @@ struct SensorState {
   Eigen::Vector2d velocity_mps = Eigen::Vector2d::Zero();
 };
 
+/// What is believed of a target beforehand: an operator's guess as it is first heard.
+struct TargetGuess {
+  double range_m = 0.0;  ///< from the sensor
+  double range_sigma_m = 0.0;
+  double speed_mps = std::numeric_limits<double>::quiet_NaN();  ///< NaN where nothing is believed of it
+  double speed_sigma_mps = std::numeric_limits<double>::quiet_NaN();
+};
+
 struct Measurement {
   double time_s = 0.0;
   BoundedVector z;      ///< in the units of the measured columns, angles in radians; NaN where a value is missing
   BoundedVector sigma;  ///< standard deviations of z, or empty where the tracker's own apply
   std::optional<SensorState> sensor;
+  std::optional<TargetGuess> guess{};
   /// What a tracker that ran elsewhere made of this measurement, where a step log tells; owned by the Recording.
   const StepRecord* recorded = nullptr;
 

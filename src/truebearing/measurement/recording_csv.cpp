@@ -33,6 +33,8 @@ constexpr std::array kUnits{Unit{"_m", 1.0},     Unit{"_mps", 1.0},
 
 constexpr std::array<const char*, 4> kSensorColumns{"sensor_east_m", "sensor_north_m", "sensor_east_mps",
                                                     "sensor_north_mps"};
+constexpr std::array<const char*, 4> kGuessColumns{"guess_range_m", "guess_range_sigma_m", "guess_speed_mps",
+                                                   "guess_speed_sigma_mps"};
 constexpr std::string_view kTruthPrefix = "truth_";
 constexpr std::string_view kSigma = "_sigma_";
 
@@ -68,6 +70,7 @@ struct Layout {
   std::vector<Column> z;
   std::vector<Column> sigma;        // as long as z, or empty
   std::vector<std::size_t> sensor;  // none, position, or position and velocity
+  std::vector<std::size_t> guess;   // none, range, or range and speed, with their sigmas
   const StateSpace* truth_space = nullptr;
   std::vector<std::optional<Column>> truth;  // by component of the truth space
 };
@@ -82,14 +85,15 @@ Column unit_column(const CsvReader& csv, std::size_t index) {
   return {index, unit->factor};
 }
 
-std::vector<std::size_t> sensor_columns(const CsvReader& csv) {
+// Of four names those that the log has: none, the first two or all.
+std::vector<std::size_t> columns_of(const CsvReader& csv, const std::array<const char*, 4>& names, const char* what) {
   std::vector<std::size_t> columns;
-  for (const char* name : kSensorColumns)
+  for (const char* name : names)
     if (const int index = csv.column(name); index >= 0) columns.push_back(static_cast<std::size_t>(index));
-  const bool position = csv.column(kSensorColumns[0]) >= 0 && csv.column(kSensorColumns[1]) >= 0;
-  if (!columns.empty() && (!position || columns.size() % 2 != 0))
-    throw InputError(csv.name(), "has own-ship columns that do not belong together",
-                     "sensor_east_m, sensor_north_m, and sensor_east_mps, sensor_north_mps with them");
+  const bool first_two = csv.column(names[0]) >= 0 && csv.column(names[1]) >= 0;
+  if (!columns.empty() && (!first_two || columns.size() % 2 != 0))
+    throw InputError(csv.name(), fmt::format("has {} columns that do not belong together", what),
+                     fmt::format("{}, {}, and {}, {} with them", names[0], names[1], names[2], names[3]));
   return columns;
 }
 
@@ -111,13 +115,15 @@ void find_truth(const CsvReader& csv, const std::vector<std::size_t>& columns, L
 Layout read_layout(const CsvReader& csv) {
   Layout layout;
   layout.time = csv.required_column("time_s");
-  layout.sensor = sensor_columns(csv);
+  layout.sensor = columns_of(csv, kSensorColumns, "own-ship");
+  layout.guess = columns_of(csv, kGuessColumns, "guess");
   std::vector<std::size_t> truth;
   std::vector<std::string> sigma_names;
   for (std::size_t index = 0; index < csv.header().size(); ++index) {
     const std::string& name = csv.header()[index];
     const bool sensor = std::find(kSensorColumns.begin(), kSensorColumns.end(), name) != kSensorColumns.end();
-    if (index == layout.time || sensor) continue;
+    const bool guess = std::find(kGuessColumns.begin(), kGuessColumns.end(), name) != kGuessColumns.end();
+    if (index == layout.time || sensor || guess) continue;
     const Column column = unit_column(csv, index);
     if (name.starts_with(kTruthPrefix)) {
       truth.push_back(index);
@@ -155,6 +161,19 @@ bool identical(const std::vector<double>& a, const std::vector<double>& b) {
                     [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); });
 }
 
+// A row without a guess has empty cells there.
+std::optional<TargetGuess> read_guess(const CsvReader& csv, const Layout& layout, const std::vector<double>& row) {
+  if (layout.guess.empty() || std::isnan(row[layout.guess[0]])) return std::nullopt;
+  for (const std::size_t index : layout.guess)
+    if (!(row[index] > 0.0)) throw csv.error(index, fmt::format("is {}", row[index]), "a number > 0");
+  TargetGuess guess{row[layout.guess[0]], row[layout.guess[1]]};
+  if (layout.guess.size() == 4) {
+    guess.speed_mps = row[layout.guess[2]];
+    guess.speed_sigma_mps = row[layout.guess[3]];
+  }
+  return guess;
+}
+
 Measurement read_measurement(const CsvReader& csv, const Layout& layout, const std::vector<double>& row) {
   Measurement measurement;
   measurement.time_s = row[layout.time];
@@ -169,6 +188,7 @@ Measurement read_measurement(const CsvReader& csv, const Layout& layout, const s
     // A measurement of unknown or infinite spread says nothing.
     if (std::isnan(sigma)) measurement.z(static_cast<Eigen::Index>(i)) = kNaN;
   }
+  measurement.guess = read_guess(csv, layout, row);
   if (layout.sensor.empty()) return measurement;
 
   SensorState sensor;
@@ -259,6 +279,9 @@ std::string write_recording(const Recording& recording) {
   };
   const bool has_sigma = any([](const Measurement& m) { return m.sigma.size() > 0; });
   const bool has_sensor = any([](const Measurement& m) { return m.sensor.has_value(); });
+  const bool has_guess = any([](const Measurement& m) { return m.guess.has_value(); });
+  const bool has_speed = any([](const Measurement& m) { return m.guess && std::isfinite(m.guess->speed_mps); });
+  const auto guess_end = has_speed ? kGuessColumns.end() : kGuessColumns.begin() + 2;
   const bool has_truth = !recording.truth.empty();
   const std::vector<double> z_factors = file_factors(recording.measured);
   const std::vector<double> x_factors = has_truth ? file_factors(recording.truth_space->components) : z_factors;
@@ -268,6 +291,7 @@ std::string write_recording(const Recording& recording) {
   if (has_sigma)
     for (const std::string& name : recording.measured) header.push_back(sigma_column(name));
   if (has_sensor) header.insert(header.end(), kSensorColumns.begin(), kSensorColumns.end());
+  if (has_guess) header.insert(header.end(), kGuessColumns.begin(), guess_end);
   if (has_truth)
     for (const std::string& component : recording.truth_space->components)
       header.push_back(std::string(kTruthPrefix) + component);
@@ -283,6 +307,13 @@ std::string write_recording(const Recording& recording) {
       const SensorState sensor = measurement.sensor.value_or(SensorState{unknown, unknown});
       for (const double value : sensor.position_m) csv.number(value);
       for (const double value : sensor.velocity_mps) csv.number(value);
+    }
+    if (has_guess) {
+      const TargetGuess guess = measurement.guess.value_or(TargetGuess{kNaN, kNaN});
+      csv.number(guess.range_m);
+      csv.number(guess.range_sigma_m);
+      if (has_speed) csv.number(guess.speed_mps);
+      if (has_speed) csv.number(guess.speed_sigma_mps);
     }
     if (has_truth) write_vector(csv, recording.truth[0].x[k], x_factors);
     csv.end_row();

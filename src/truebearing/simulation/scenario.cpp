@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "truebearing/simulation/bearings_only_scenario.hpp"
 #include "truebearing/simulation/line_scenario.hpp"
 #include "truebearing/simulation/planar_flight_scenario.hpp"
 #include "truebearing/simulation/planar_legs_scenario.hpp"
@@ -18,7 +19,8 @@ struct ScenarioKind {
 };
 constexpr std::array kKinds{ScenarioKind{"line", read_line_scenario},
                             ScenarioKind{"planar_flight", read_planar_flight_scenario},
-                            ScenarioKind{"planar_legs", read_planar_legs_scenario}};
+                            ScenarioKind{"planar_legs", read_planar_legs_scenario},
+                            ScenarioKind{"bearings_only", read_bearings_only_scenario}};
 
 }  // namespace
 

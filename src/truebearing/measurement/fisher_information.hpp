@@ -1,0 +1,24 @@
+// Fisher information of measurements about the state x0 (n) of a target whose motion is known but for x0:
+//     J(x0) = sum_i (H_i Phi_i)' R_i^-1 (H_i Phi_i),  H_i at the true state, Phi_i = dx(t_i) / dx0.
+// Its inverse is the Cramer-Rao bound of unbiased estimators; with a prior's information added, the posterior bound.
+// Van Trees 1968, sec. 2.4; Nardone, Lindgren and Gong 1984 for bearings.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include "truebearing/measurement/measurement_model.hpp"
+
+namespace truebearing {
+
+/// What one measurement of the true state x, reached by Phi (n x n), adds.
+template <MeasurementModel Model>
+Eigen::Matrix<typename Model::Scalar, Model::kStates, Model::kStates> fisher_information(
+    const Model& model, const Eigen::Matrix<typename Model::Scalar, Model::kStates, 1>& x,
+    const Eigen::Matrix<typename Model::Scalar, Model::kStates, Model::kStates>& Phi) {
+  const Eigen::Matrix<typename Model::Scalar, Model::kMeasurements, Model::kStates> G = model.H(x) * Phi;
+  const Eigen::Matrix<typename Model::Scalar, Model::kMeasurements, Model::kMeasurements> R = model.R();
+  return G.transpose() * R.llt().solve(G);
+}
+
+}  // namespace truebearing

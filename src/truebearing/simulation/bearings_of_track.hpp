@@ -1,0 +1,32 @@
+// A scenario of bearings whose target sails a recorded track instead of a simulated path: the truth is the track's own,
+// at its own times, moved so that it begins at the scenario's range and bearing from own ship. Own ship, sensor and
+// guess are the scenario's; its period, its target's course and speed, and what it accepts are not asked.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "truebearing/simulation/bearings_only_scenario.hpp"
+
+namespace truebearing {
+
+class BearingsOfTrack final : public Scenario {
+ public:
+  /// From the first known state at `from_s` of the track's time on, which becomes time 0, for the scenario's duration.
+  /// Throws InputError where the track has no truth of one target in the plane, or none then.
+  BearingsOfTrack(Recording track, double from_s, BearingsOnlyParameters parameters);
+
+  Recording simulate(const RunKey& key) const override;
+  const StateSpace& truth_space() const override { return plane_space(); }
+
+ private:
+  Recording track_;
+  std::size_t begin_ = 0;
+  BearingsOnlyParameters parameters_;
+};
+
+/// A track from positions on the globe, of the vessel of that number where there are several
+/// (measurement/geographic_track.hpp), or from a log with its truth. Throws InputError.
+Recording read_target_track(const std::filesystem::path& path, std::optional<int> number);
+
+}  // namespace truebearing

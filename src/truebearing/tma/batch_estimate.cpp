@@ -1,0 +1,26 @@
+#include "truebearing/tma/batch_estimate.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+namespace truebearing {
+
+Eigen::Matrix4d covariance_of(const Eigen::Matrix4d& information) {
+  constexpr double kLeast = 1e-12;
+  const Eigen::Vector4d scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::Matrix4d scaled = scale.asDiagonal() * information * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(scaled);
+  const Eigen::Vector4d inverse = eigen.eigenvalues().cwiseMax(kLeast).cwiseInverse();
+  const Eigen::Matrix4d half = scale.asDiagonal() * eigen.eigenvectors() * inverse.cwiseSqrt().asDiagonal();
+  return half * half.transpose();
+}
+
+void carry(double t, Eigen::Vector4d& x, Eigen::Matrix4d& P) {
+  Eigen::Matrix4d F = Eigen::Matrix4d::Identity();
+  F(0, 2) = F(1, 3) = t;
+  x = F * x;
+  P = F * P * F.transpose();
+  P = 0.5 * (P + P.transpose().eval());
+}
+
+}  // namespace truebearing

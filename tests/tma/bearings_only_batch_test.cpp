@@ -1,0 +1,164 @@
+#include "truebearing/tma/bearings_only_batch.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include "tests/support/allocation_count.hpp"
+#include "tests/support/bearing_runs.hpp"
+#include "truebearing/core/covariance.hpp"
+#include "truebearing/measurement/fisher_information.hpp"
+
+namespace truebearing {
+namespace {
+
+using testing::data_scenario;
+using testing::truth_at;
+using testing::two_legs;
+using testing::window_of;
+
+const Eigen::Vector4d kTarget(3000.0, 5000.0, -2.0, 1.0);
+
+Eigen::Vector4d at_end(double t) {
+  Eigen::Vector4d x = kTarget;
+  x.head<2>() += t * kTarget.tail<2>();
+  return x;
+}
+
+TEST(BearingsOnlyBatch, FindsTheTargetOfExactBearings) {
+  BearingsOnlyBatch batch;
+  const BatchEstimate estimate = batch.solve(two_legs(kTarget, 300.0, 600.0));
+  ASSERT_TRUE(estimate.found);
+  EXPECT_LT((estimate.x - at_end(600.0)).norm(), 1e-3);
+  EXPECT_LT(estimate.cost, 1e-9);
+  EXPECT_TRUE(batch.observability().observable());
+  EXPECT_EQ(estimate.non_finite_starts, 0);
+}
+
+TEST(BearingsOnlyBatch, CovarianceIsTheBoundAtTheEstimate) {
+  const BearingWindow window = two_legs(kTarget, 300.0, 600.0);
+  BearingsOnlyBatch batch;
+  const BatchEstimate estimate = batch.solve(window);
+  const Eigen::Matrix4d information = window.cartesian(estimate.x, estimate.time_s).A;
+  EXPECT_LT((estimate.P * information - Eigen::Matrix4d::Identity()).norm(), 1e-3);
+}
+
+TEST(BearingsOnlyBatch, TurnsAndShiftsWithTheFrame) {
+  const BearingWindow window = two_legs(kTarget, 300.0, 900.0, 1.0);
+  BearingsOnlyBatch batch;
+  const BatchEstimate plain = batch.solve(window);
+  for (const double angle : {0.3, 2.0, -1.7, 3.1}) {
+    const Eigen::Rotation2Dd rotation(-angle);  // clockwise
+    const Eigen::Vector2d shift(12345.0, -6789.0);
+    BearingWindow moved;
+    for (std::size_t i = 0; i < window.size(); ++i)
+      moved.add(window.time_s(i) + 1000.0, window.bearing_rad(i) + angle, radians(1.0),
+                rotation * window.site_m(i) + shift);
+    const BatchEstimate turned = batch.solve(moved);
+    Eigen::Matrix4d R = Eigen::Matrix4d::Zero();
+    R.topLeftCorner<2, 2>() = R.bottomRightCorner<2, 2>() = rotation.toRotationMatrix();
+    Eigen::Vector4d expected = R * plain.x;
+    expected.head<2>() += shift;
+    EXPECT_LT((turned.x - expected).norm(), 1e-3) << angle;
+    EXPECT_NEAR(turned.cost, plain.cost, 1e-8);
+    EXPECT_LT((turned.P - R * plain.P * R.transpose()).norm(), 1e-5 * plain.P.norm());
+  }
+}
+
+TEST(BearingsOnlyBatch, WholeTurnsChangeNothing) {
+  const BearingWindow window = two_legs(kTarget, 300.0, 900.0, 1.0);
+  BearingWindow turned;
+  for (std::size_t i = 0; i < window.size(); ++i)
+    turned.add(window.time_s(i), window.bearing_rad(i) + 2.0 * kPi * static_cast<double>(i % 3), radians(1.0),
+               window.site_m(i));
+  BearingsOnlyBatch batch;
+  EXPECT_LT((batch.solve(window).x - batch.solve(turned).x).norm(), 1e-3);
+}
+
+// A filter that believes in a tenth of the noise is far outside the interval, an honest one inside.
+TEST(BearingsOnlyBatch, IsConsistentAndEfficientWhereTheRangeIsObservable) {
+  constexpr int kRuns = 200;
+  const auto scenario = data_scenario("cho_s1");
+  BearingsOnlyBatch batch;
+  double nees = 0.0, boastful = 0.0;
+  for (int run = 0; run < kRuns; ++run) {
+    const Recording recording = scenario->simulate({5, Role::evaluation, static_cast<std::uint64_t>(run)});
+    const BatchEstimate estimate = batch.solve(window_of(recording, 1800.0));
+    const Eigen::Vector4d error = truth_at(recording, 1800.0) - estimate.x;
+    nees += mahalanobis_squared(estimate.P, error) / kRuns;
+    boastful += mahalanobis_squared(Eigen::Matrix4d(0.1 * estimate.P), error) / kRuns;
+  }
+  EXPECT_GT(nees, 3.2);  // chi-square with 800 degrees of freedom, once in 1e5
+  EXPECT_LT(nees, 4.95);
+  EXPECT_GT(boastful, 4.95);
+}
+
+TEST(BearingsOnlyBatch, ThreeStartsFindWhatTwoHundredAndTwentyFiveFind) {
+  const auto scenario = data_scenario("bearings_only_observable");
+  BearingsOnlyBatch few;
+  BearingsOnlyBatch many({.start_grid = true});
+  for (std::uint64_t run = 0; run < 50; ++run) {
+    const BearingWindow window = window_of(scenario->simulate({3, Role::evaluation, run}));
+    EXPECT_LE(few.solve(window).cost, many.solve(window).cost + 1e-6) << run;
+  }
+}
+
+TEST(BearingsOnlyBatch, PriorKeepsAnUnobservableRange) {
+  const BearingWindow window = two_legs(kTarget, 1e9, 600.0, 1.0);
+  BatchPrior prior;
+  prior.velocity_information = Eigen::Matrix2d::Identity() / 25.0;
+  prior.range = BatchPrior::Range{5800.0, 500.0, {0.0, 0.0}, 0.0};
+  BearingsOnlyBatch batch;
+  const BatchEstimate estimate = batch.solve(window, prior);
+  ASSERT_TRUE(estimate.found);
+  EXPECT_NEAR((estimate.x - 600.0 * Eigen::Vector4d(estimate.x[2], estimate.x[3], 0, 0)).head<2>().norm(), 5800.0,
+              500.0);
+  EXPECT_FALSE(batch.observability().observable());
+  EXPECT_TRUE(is_covariance(estimate.P));
+}
+
+TEST(BearingsOnlyBatch, HuberLossShrugsOffOutliers) {
+  const BearingWindow clean = two_legs(kTarget, 300.0, 900.0, 1.0);
+  BearingWindow spoilt;
+  for (std::size_t i = 0; i < clean.size(); ++i)
+    spoilt.add(clean.time_s(i), clean.bearing_rad(i) + (i % 9 == 4 ? radians(25.0) : 0.0), radians(1.0),
+               clean.site_m(i));
+  const auto error = [&](BearingsOnlyBatch batch) { return (batch.solve(spoilt).x - at_end(900.0)).head<2>().norm(); };
+  const double plain = error(BearingsOnlyBatch()), robust = error(BearingsOnlyBatch({.huber_sigmas = 1.5}));
+  EXPECT_LT(robust, 0.5 * plain);
+}
+
+TEST(BearingsOnlyBatch, ToldOfAnotherMinimumThatIsNearlyAsGood) {
+  BearingsOnlyBatch batch;
+  batch.solve(two_legs(kTarget, 300.0, 900.0, 1.0));
+  EXPECT_TRUE(batch.ambiguities().empty());
+}
+
+TEST(BearingsOnlyBatch, TooFewBearingsAreNoEstimate) {
+  BearingsOnlyBatch batch;
+  BearingWindow window;
+  EXPECT_FALSE(batch.solve(window).found);
+  for (int k = 0; k < 5; ++k) window.add(10.0, 0.3, 0.02, {0.0, 0.0});  // all at one time
+  EXPECT_FALSE(batch.solve(window).found);
+}
+
+TEST(BearingsOnlyBatch, OneBearingAgainAndAgainFromAShipAtRestIsFiniteAndNothing) {
+  BearingWindow window;
+  for (int k = 0; k < 20; ++k) window.add(10.0 * k, 0.7, radians(1.0), {100.0, 200.0});
+  BearingsOnlyBatch batch;
+  const BatchEstimate estimate = batch.solve(window);
+  ASSERT_TRUE(estimate.found);
+  EXPECT_TRUE(estimate.x.allFinite());
+  EXPECT_TRUE(is_covariance(estimate.P));
+  EXPECT_FALSE(batch.observability().observable());
+}
+
+TEST(BearingsOnlyBatch, SecondSolutionAllocatesNothing) {
+  const BearingWindow window = two_legs(kTarget, 300.0, 900.0, 1.0);
+  BearingsOnlyBatch batch;
+  batch.solve(window);
+  EXPECT_EQ(testing::allocations_of([&] { batch.solve(window); }), 0);
+}
+
+}  // namespace
+}  // namespace truebearing

@@ -6,6 +6,8 @@
 
 #include "tests/support/allocation_count.hpp"
 #include "truebearing/filter/kalman.hpp"
+#include "truebearing/filter/log_polar.hpp"
+#include "truebearing/filter/modified_gain.hpp"
 #include "truebearing/filter/unscented.hpp"
 #include "truebearing/measurement/longer_state.hpp"
 #include "truebearing/measurement/position.hpp"
@@ -63,6 +65,30 @@ TEST(KalmanFilterAllocation, StepsAllocateNothing) {
 TEST(UnscentedKalmanFilterAllocation, StepsAllocateNothing) {
   expect_no_allocation<UnscentedKalmanFilter<4>>();
   expect_no_allocation_in_a_turn<UnscentedKalmanFilter<5>>();
+}
+
+template <typename Filter>
+void expect_no_allocation_of_bearings() {
+  const ConstantVelocity<2, ContinuousWhiteNoise> motion{{1e-5}};
+  const Bearing<> model{{-1000.0, -2000.0}, {3.0, 4.0}, 0.02};
+  Filter filter(Eigen::Vector4d(4000.0, 3000.0, 1.0, 2.0), 1e4 * Eigen::Matrix4d::Identity());
+  const long before = testing::allocations;
+  Eigen::internal::set_is_malloc_allowed(false);
+  bool ok = true;
+  for (int k = 0; k < 10; ++k) {
+    ok &= filter.predict(motion, 1.0) == StepStatus::ok;
+    ok &= filter.update(model, Bearing<>::Vector(0.8)).status == StepStatus::ok;
+  }
+  Eigen::internal::set_is_malloc_allowed(true);
+  EXPECT_EQ(testing::allocations, before);
+  EXPECT_TRUE(ok);
+}
+
+TEST(BearingFilterAllocation, StepsAllocateNothing) {
+  expect_no_allocation_of_bearings<KalmanFilter<4>>();
+  expect_no_allocation_of_bearings<UnscentedKalmanFilter<4>>();
+  expect_no_allocation_of_bearings<ModifiedGainFilter<4>>();
+  expect_no_allocation_of_bearings<LogPolarFilter<>>();
 }
 
 }  // namespace

@@ -25,7 +25,10 @@ PlaneMotion read_plane_motion(TableReader& motion) {
 
 std::variant<PlaneSensor, PolarSensor> read_plane_sensor(TableReader& tracker) {
   TableReader table = tracker.table("measurement");
-  const std::string model = table.choice("model", {"position", "range_bearing", "converted_range_bearing"});
+  const std::string model = table.choice("model", {"position", "range_bearing", "converted_range_bearing", "bearing"});
+  if (model == "bearing")
+    throw table.error("model", "is \"bearing\", which this kind of tracker does not take",
+                      "a tracker of kind kalman, unscented, modified_gain, log_polar or range_bank");
   const double factor = table.number_or("sigma_factor", 1.0, kPositive);
   if (model == "position") {
     if (table.has("sigma_m") == table.has("variance_m2"))

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "truebearing/filter/kalman.hpp"
+#include "truebearing/study/bearing_trackers.hpp"
 #include "truebearing/study/filter_configuration.hpp"
 #include "truebearing/study/plane_filters.hpp"
 #include "truebearing/tracker/filter_bank.hpp"
@@ -58,7 +59,8 @@ AnyNoise<N> scaled(const AnyNoise<N>& any, double factor) {
 }  // namespace
 
 std::unique_ptr<Tracker> make_kalman_tracker(TableReader& table) {
-  if (table.choice_or("space", {"line", "plane"}, "line") == "plane") return make_plane_kalman(table);
+  if (table.choice_or("space", {"line", "plane"}, "line") == "plane")
+    return measures_bearings(table) ? make_bearing_kalman(table) : make_plane_kalman(table);
   const LineMotion motion = read_line_motion(table);
   const auto make = [&](auto form) -> std::unique_ptr<Tracker> {
     return std::make_unique<FilterTracker<KalmanFilter<2, decltype(form)>, LineMotion, PositionSensor<1>>>(
@@ -72,7 +74,7 @@ std::unique_ptr<Tracker> make_kalman_tracker(TableReader& table) {
 
 std::unique_ptr<Tracker> make_unscented_tracker(TableReader& table) {
   table.choice("space", {"plane"});
-  return make_plane_unscented(table);
+  return measures_bearings(table) ? make_bearing_unscented(table) : make_plane_unscented(table);
 }
 
 std::unique_ptr<Tracker> make_multiple_model_tracker(TableReader& table) {

@@ -6,6 +6,8 @@
 
 #include "truebearing/core/error.hpp"
 #include "truebearing/core/suggestion.hpp"
+#include "truebearing/study/batch_trackers.hpp"
+#include "truebearing/study/bearing_trackers.hpp"
 #include "truebearing/study/filter_trackers.hpp"
 
 namespace truebearing {
@@ -14,8 +16,16 @@ namespace {
 struct Registry {
   std::mutex mutex;
   std::map<std::string, TrackerMaker> makers{
-      {"kalman", make_kalman_tracker},      {"kalman_bank", make_kalman_bank}, {"unscented", make_unscented_tracker},
-      {"imm", make_multiple_model_tracker}, {"raw", make_raw_tracker},         {"recorded", make_recorded_tracker},
+      {"bearings_batch", make_bearings_batch},
+      {"kalman", make_kalman_tracker},
+      {"kalman_bank", make_kalman_bank},
+      {"unscented", make_unscented_tracker},
+      {"imm", make_multiple_model_tracker},
+      {"raw", make_raw_tracker},
+      {"recorded", make_recorded_tracker},
+      {"modified_gain", make_modified_gain_tracker},
+      {"log_polar", make_log_polar_tracker},
+      {"range_bank", make_range_bank},
   };
 };
 

@@ -1,13 +1,17 @@
 // A bank of filters under one prior each: hypotheses on what is unknown but constant (the mean of the prior, Q, R),
 // weighted by the likelihood of the innovations (Magill 1965; Bar-Shalom, Li and Kirubarajan 2001, sec. 11.6.2). With
 // the family's own distribution for the hypotheses its mean approximates E[x | z]: no estimator has a smaller mean
-// squared error on that family, so the bank is the bound that stands beside every corrected result.
+// squared error on that family, so the bank is the bound that stands beside every corrected result. Where the first
+// measurement says what is to be supposed, as a bearing does of ranges (Peach 1995), the hypotheses are made from it.
 #pragma once
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -23,14 +27,23 @@ class FilterBank final : public Tracker {
   static constexpr int kMeasurements = Sensor::Model::kMeasurements;
 
   struct Hypothesis {
-    Filter start;  ///< the prior, which belongs to time start_time_s
+    Filter start;  ///< the prior, which belongs to time start_time_s, or to that of the first usable measurement
     Motion motion;
     Sensor sensor;
     double log_weight = 0.0;  ///< logarithm of its prior probability, up to a common constant
   };
 
+  /// Sets the starts and weights of hypotheses from the first usable measurement and the latest guess that came until
+  /// then. False where it cannot: the next usable measurement is then the first.
+  using Supposition = std::function<bool(const Measurement&, const std::optional<TargetGuess>&, std::span<Hypothesis>)>;
+
   FilterBank(const StateSpace& space, std::vector<Hypothesis> hypotheses, double start_time_s = 0.0)
       : space_(&space), hypotheses_(std::move(hypotheses)), start_time_s_(start_time_s) {
+    reset();
+  }
+  /// The same with hypotheses whose starts and weights `suppose` sets.
+  FilterBank(const StateSpace& space, std::vector<Hypothesis> hypotheses, Supposition suppose)
+      : space_(&space), hypotheses_(std::move(hypotheses)), suppose_(std::move(suppose)) {
     reset();
   }
 
@@ -40,10 +53,13 @@ class FilterBank final : public Tracker {
       record_.status = StepStatus::rejected;
       return record_.x.size() == 0 ? std::span<const StepRecord>() : std::span<const StepRecord>(&record_, 1);
     }
+    const bool usable = verdict == StreamGuard::Verdict::usable && measurement.z.size() == kMeasurements;
+    if (measurement.guess) guess_ = measurement.guess;
     record_.time_s = measurement.time_s;
     record_.sensor = measurement.sensor;
+    if (members_.empty()) return usable ? start_from(measurement) : std::span<const StepRecord>();
+
     record_.status = predict(measurement.time_s - used_time_s_);
-    const bool usable = verdict == StreamGuard::Verdict::usable && measurement.z.size() == kMeasurements;
     if (record_.status == StepStatus::coasted && usable) {
       record_.status = weigh(measurement);
       if (record_.status == StepStatus::failed) predict(measurement.time_s - used_time_s_);
@@ -61,12 +77,14 @@ class FilterBank final : public Tracker {
     guard_ = {};
     record_ = {};
     record_.space = space_;
+    guess_.reset();
     used_time_s_ = start_time_s_;
     members_.clear();
-    for (const Hypothesis& hypothesis : hypotheses_) members_.push_back({hypothesis.start, hypothesis.log_weight});
+    if (!suppose_) begin();
   }
 
   std::unique_ptr<Tracker> clone() const override {
+    if (suppose_) return std::make_unique<FilterBank>(*space_, hypotheses_, suppose_);
     return std::make_unique<FilterBank>(*space_, hypotheses_, start_time_s_);
   }
   const StateSpace& space() const override { return *space_; }
@@ -80,6 +98,20 @@ class FilterBank final : public Tracker {
     double log_weight;
     double weight = 0.0;  // not normalised
   };
+
+  void begin() {
+    for (const Hypothesis& hypothesis : hypotheses_) members_.push_back({hypothesis.start, hypothesis.log_weight});
+  }
+
+  std::span<const StepRecord> start_from(const Measurement& measurement) {
+    if (!suppose_(measurement, guess_, hypotheses_)) return {};
+    begin();
+    shown_ = members_;
+    used_time_s_ = measurement.time_s;
+    record_.status = StepStatus::ok;
+    publish_mixture();
+    return {&record_, 1};
+  }
 
   // The members at the end of a step of dt_s. They themselves stay at their last used measurement: a missing one leaves
   // no trace in what follows, to the bit.
@@ -100,7 +132,8 @@ class FilterBank final : public Tracker {
     double largest = -kInfinity;
     for (std::size_t i = 0; i < shown_.size(); ++i) {
       Member& member = shown_[i];
-      const auto update = member.filter.update(hypotheses_[i].sensor.model(measurement), measurement.z);
+      const auto update =
+          member.filter.update(hypotheses_[i].sensor.model(measurement), hypotheses_[i].sensor.value(measurement));
       // The likelihood of the innovation, up to the power of 2 pi that all members share.
       const double gained = -0.5 * (update.nis + std::log(update.S.determinant()));
       member.log_weight += update.status == StepStatus::ok && std::isfinite(gained) ? gained : -kInfinity;
@@ -134,11 +167,13 @@ class FilterBank final : public Tracker {
 
   const StateSpace* space_;
   std::vector<Hypothesis> hypotheses_;
-  double start_time_s_;
+  double start_time_s_ = 0.0;
+  Supposition suppose_;  // empty where the hypotheses stand beforehand
   StreamGuard guard_;
   std::vector<Member> members_;  // at the last measurement that was used
   std::vector<Member> shown_;    // at the last step
   double used_time_s_ = 0.0;
+  std::optional<TargetGuess> guess_;  // the latest since reset
   StepRecord record_;
 };
 

@@ -6,10 +6,13 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <type_traits>
 #include <utility>
 #include <variant>
 
+#include "truebearing/measurement/bearing.hpp"
 #include "truebearing/measurement/longer_state.hpp"
+#include "truebearing/tma/range_prior.hpp"
 #include "truebearing/tracker/gate.hpp"
 #include "truebearing/tracker/start.hpp"
 #include "truebearing/tracker/stream_guard.hpp"
@@ -37,7 +40,10 @@ class FilterTracker final : public Tracker {
   static constexpr int kStates = Motion::kStates;
   static constexpr int kMeasurements = Sensor::Model::kMeasurements;
   using Prior = PriorStart<kStates>;
-  using Start = std::variant<Prior, TwoPointStart, OnePointStart>;
+  /// Bearings tell no position: their tracks begin with the first of them and what is believed of the range.
+  static constexpr bool kMeasuresBearings = std::is_same_v<typename Sensor::Model, Bearing<>>;
+  using Start = std::conditional_t<kMeasuresBearings, std::variant<Prior, RangePrior>,
+                                   std::variant<Prior, TwoPointStart, OnePointStart>>;
 
   FilterTracker(const StateSpace& space, Motion motion, Sensor sensor, Start start, FilterTrackerOptions options = {})
       : space_(&space),
@@ -52,6 +58,8 @@ class FilterTracker final : public Tracker {
     const StreamGuard::Verdict verdict = guard_.examine(measurement);
     const bool usable = verdict == StreamGuard::Verdict::usable && measurement.z.size() == kMeasurements;
     if (verdict == StreamGuard::Verdict::repeated || verdict == StreamGuard::Verdict::out_of_order) return refuse();
+    if constexpr (kMeasuresBearings)
+      if (measurement.guess) guess_ = measurement.guess;
 
     if (usable && filter_ && measurement.time_s - filter_time_s_ > options_.lost_after_s) restart(measurement.time_s);
     if (!filter_) return usable ? start_from(measurement) : std::span<const StepRecord>();
@@ -77,6 +85,7 @@ class FilterTracker final : public Tracker {
     record_ = {};
     record_.space = space_;
     record_.track = -1;
+    guess_.reset();
     restart(std::holds_alternative<Prior>(start_) ? std::get<Prior>(start_).time_s : 0.0);
   }
 
@@ -115,9 +124,17 @@ class FilterTracker final : public Tracker {
     filter_time_s_ = time_s;
   }
 
-  // The first of two measurements waits; the second makes the state. Where both are of one time, the later one waits.
+  // Of positions, the first of two measurements waits; the second makes the state. Where both are of one time, the
+  // later one waits. A bearing makes it by itself.
   std::span<const StepRecord> start_from(const Measurement& measurement) {
-    if constexpr (2 * kMeasurements <= kStates) {
+    if constexpr (kMeasuresBearings) {
+      const auto* prior = std::get_if<RangePrior>(&start_);
+      if (!prior || !prior->suffices_with(guess_)) return {};
+      const auto model = sensor_.model(measurement);
+      const GaussianState start =
+          prior->state(sensor_.value(measurement)[0], model.sigma_rad, {model.site_m, model.site_velocity_mps}, guess_);
+      return begin_from(measurement, lengthened<kStates>(start.x, start.P, 0.0));
+    } else if constexpr (2 * kMeasurements <= kStates) {
       const auto R = sensor_.model(measurement).R();
       if (const auto* one_point = std::get_if<OnePointStart>(&start_)) {
         Eigen::Matrix<double, 2 * kMeasurements, 1> x = Eigen::Matrix<double, 2 * kMeasurements, 1>::Zero();
@@ -143,6 +160,11 @@ class FilterTracker final : public Tracker {
   std::span<const StepRecord> begin_from(const Measurement& measurement, const Prior& start) {
     begin(start.x, start.P);
     pending_.reset();
+    if (!filter_->x().allFinite() || !filter_->P().allFinite()) {
+      ++guard_.counts.failed;
+      filter_.reset();
+      return {};
+    }
     filter_time_s_ = measurement.time_s;
     clear_blocks();
     record_.time_s = measurement.time_s;
@@ -185,7 +207,10 @@ class FilterTracker final : public Tracker {
       ++guard_.counts.gated;
       return StepStatus::rejected;
     }
-    record_.gain.emplace(update.K.topRows(space_->size()));
+    if (space_->size() == kStates)
+      record_.gain.emplace(update.K);
+    else
+      record_.gain.emplace(update.K.topRows(space_->size()));
     filter = updated;
     if (options_.output_pull > 0.0) pull(model, z, update, filter);
     return StepStatus::ok;
@@ -221,9 +246,15 @@ class FilterTracker final : public Tracker {
     return {&record_, 1};
   }
 
-  // Without the components that the space does not have.
-  BoundedVector published(const State& x) const { return x.head(space_->size()); }
-  BoundedMatrix published(const Covariance& P) const { return P.topLeftCorner(space_->size(), space_->size()); }
+  // Without the components that the space does not have; whole, and so without a loop, where it has them all.
+  BoundedVector published(const State& x) const {
+    if (space_->size() == kStates) return x;
+    return x.head(space_->size());
+  }
+  BoundedMatrix published(const Covariance& P) const {
+    if (space_->size() == kStates) return P;
+    return P.topLeftCorner(space_->size(), space_->size());
+  }
 
   void clear_blocks() {
     record_.prediction.reset();
@@ -242,6 +273,7 @@ class FilterTracker final : public Tracker {
   std::optional<Filter> filter_;
   double filter_time_s_ = 0.0;  // of the last measurement that was used
   std::optional<Measurement> pending_;
+  std::optional<TargetGuess> guess_;  // the latest since reset, of a tracker of bearings
   StepRecord record_;
   Vector moved_ = Vector::Zero();  // of the last step's output_pull
   Eigen::Matrix<double, kMeasurements, kMeasurements> spread_ =

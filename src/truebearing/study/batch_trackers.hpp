@@ -1,0 +1,18 @@
+// Makers of batch target-motion analysis from tables of a study.
+#pragma once
+
+#include <memory>
+
+#include "truebearing/io/table_reader.hpp"
+#include "truebearing/tracker/bearings_batch_tracker.hpp"
+
+namespace truebearing {
+
+/// Kind "bearings_batch". Keys: method = "ml", "map", "gauss_newton", "levenberg" or "levenberg_marquardt"; measurement
+/// = { model = "bearing", bearing_sigma_deg, sigma_factor }; window_s; solve_at_s or solve_every_s. Of ml and map:
+/// start_ranges_m or start_grid, huber_sigmas, warm_start, cut_at_manoeuvres; of map: prior = { kind = "range", ... } as filters start
+/// from, or { kind = "velocity", velocity_sigma_mps }. Of gauss_newton: inverse = "cofactor", "cofactor_float" or
+/// "pivoted".
+std::unique_ptr<Tracker> make_bearings_batch(TableReader& table);
+
+}  // namespace truebearing

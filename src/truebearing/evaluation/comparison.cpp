@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <optional>
+#include <span>
 
 #include "truebearing/core/error.hpp"
 
@@ -10,8 +11,11 @@ namespace truebearing {
 
 namespace {
 
+using BoundAtTimes = std::vector<TargetMotionVariance>;  // [time]
+
 struct SetScores {
   std::vector<std::vector<RunScore>> runs;  // [run][tracker]
+  std::vector<BoundAtTimes> bound;          // [run], or empty
   std::vector<double> time_s;               // of the first run
   std::vector<std::string> phases;
 };
@@ -21,11 +25,14 @@ SetScores run_set(const TrackerSet& trackers, const std::vector<Scorer>& scorers
   const Scenario& scenario = *scenarios[index].scenario;
   SetScores set;
   set.runs.resize(options.runs);
+  if (options.cramer_rao) set.bound.resize(options.runs);
   std::vector<std::optional<TrackerSet>> clones(worker_count(options.threads));
   const auto run_one = [&](std::size_t run, std::size_t worker) {
     if (!clones[worker]) clones[worker].emplace(trackers.clone());
     const Recording recording = scenario.simulate({options.seed, options.role, run});
     set.runs[run] = score_recording(*clones[worker], scorers, recording, options.scoring);
+    if (options.cramer_rao)
+      set.bound[run] = options.cramer_rao->variances(recording, steps_at(recording, options.scoring.times_s));
     if (run != 0) return;
     for (const Measurement& measurement : recording.measurements) set.time_s.push_back(measurement.time_s);
     set.phases = recording.phases;
@@ -39,27 +46,48 @@ SetScores run_set(const TrackerSet& trackers, const std::vector<Scorer>& scorers
   return set;
 }
 
-Comparison summarise_runs(const TrackerSet& trackers, const std::vector<Scorer>& scorers,
-                          const std::vector<const std::vector<RunScore>*>& runs, const ComparisonOptions& options) {
+Comparison summarise_sets(const TrackerSet& trackers, const std::vector<Scorer>& scorers,
+                          std::span<const SetScores> sets, const ComparisonOptions& options) {
   Comparison comparison;
   comparison.seed = options.seed;
   comparison.runs = options.runs;
   comparison.bounds = options.bounds;
   std::vector<std::vector<const RunScore*>> by_tracker(scorers.size());
-  for (const std::vector<RunScore>* run : runs)
-    for (std::size_t i = 0; i < scorers.size(); ++i) by_tracker[i].push_back(&(*run)[i]);
-  for (std::size_t i = 0; i < scorers.size(); ++i)
+  std::vector<const BoundAtTimes*> bounds;
+  for (const SetScores& set : sets) {
+    for (const std::vector<RunScore>& run : set.runs)
+      for (std::size_t i = 0; i < scorers.size(); ++i) by_tracker[i].push_back(&run[i]);
+    for (const BoundAtTimes& bound : set.bound) bounds.push_back(&bound);
+  }
+  for (std::size_t i = 0; i < scorers.size(); ++i) {
     comparison.trackers.push_back(
         summarise(trackers.name(static_cast<int>(i)), scorers[i], by_tracker[i], options.scoring));
+    comparison.trackers.back().metrics = time_metrics(scorers[i], by_tracker[i], options.scoring);
+  }
 
   const auto index_of = [&](const std::string& name) {
     for (int i = 0; i < trackers.size(); ++i)
       if (trackers.name(i) == name) return static_cast<std::size_t>(i);
-    throw InputError("pairs", "there is no tracker \"" + name + "\" in this comparison");
+    throw InputError("scoring", "there is no tracker \"" + name + "\" in this comparison");
   };
+  const auto add_metrics = [](TrackerSummary& summary, const std::vector<Metric>& metrics) {
+    summary.metrics.insert(summary.metrics.end(), metrics.begin(), metrics.end());
+  };
+  if (options.cramer_rao) {
+    comparison.cramer_rao = summarise_bound(bounds, options.scoring.times_s);
+    for (TrackerSummary& summary : comparison.trackers)
+      add_metrics(summary, range_efficiency(summary.metrics, comparison.cramer_rao->metrics));
+  }
+  if (!options.global_minimum.empty()) {
+    const std::size_t best = index_of(options.global_minimum);
+    for (std::size_t i = 0; i < scorers.size(); ++i)
+      if (i != best) add_metrics(comparison.trackers[i], global_minimum_share(by_tracker[i], by_tracker[best]));
+  }
   for (const auto& [a, b] : options.pairs) {
     const std::size_t ia = index_of(a), ib = index_of(b);
-    comparison.pairs.push_back({a, b, paired_difference(scorers[ia], by_tracker[ia], scorers[ib], by_tracker[ib])});
+    comparison.pairs.push_back(
+        {a, b, paired_difference(scorers[ia], by_tracker[ia], scorers[ib], by_tracker[ib]),
+         timed_differences(scorers[ia], by_tracker[ia], scorers[ib], by_tracker[ib], options.scoring)});
   }
   return comparison;
 }
@@ -81,17 +109,12 @@ Comparison compare(const TrackerSet& trackers, const std::vector<NamedScenario>&
   std::vector<SetScores> sets;
   for (std::size_t i = 0; i < scenarios.size(); ++i) sets.push_back(run_set(trackers, scorers, scenarios, i, options));
 
-  std::vector<const std::vector<RunScore>*> all;
-  for (const SetScores& set : sets)
-    for (const std::vector<RunScore>& run : set.runs) all.push_back(&run);
-  Comparison comparison = summarise_runs(trackers, scorers, all, options);
+  Comparison comparison = summarise_sets(trackers, scorers, sets, options);
   comparison.time_s = sets.front().time_s;
   comparison.phases = sets.front().phases;
   if (sets.size() < 2) return comparison;
   for (std::size_t i = 0; i < sets.size(); ++i) {
-    std::vector<const std::vector<RunScore>*> runs;
-    for (const std::vector<RunScore>& run : sets[i].runs) runs.push_back(&run);
-    comparison.sets.emplace_back(scenarios[i].name, summarise_runs(trackers, scorers, runs, options));
+    comparison.sets.emplace_back(scenarios[i].name, summarise_sets(trackers, scorers, {&sets[i], 1}, options));
     comparison.sets.back().second.time_s = sets[i].time_s;
     comparison.sets.back().second.phases = sets[i].phases;
   }

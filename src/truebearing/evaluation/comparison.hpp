@@ -1,12 +1,15 @@
 // A comparison: trackers on the same Monte Carlo runs of one scenario, scored against the truth.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "truebearing/evaluation/bound_summary.hpp"
 #include "truebearing/evaluation/monte_carlo.hpp"
 #include "truebearing/evaluation/summary.hpp"
+#include "truebearing/evaluation/time_metrics.hpp"
 #include "truebearing/simulation/scenario.hpp"
 
 namespace truebearing {
@@ -19,6 +22,8 @@ struct ComparisonOptions {
   ScoringRule scoring;
   std::vector<std::pair<std::string, std::string>> pairs;  ///< "a - b" for each
   std::vector<std::string> bounds;                         ///< trackers that are bounds: reported as such too
+  std::optional<TargetMotionBound> cramer_rao;             ///< at the times of the scoring
+  std::string global_minimum;  ///< the batch tracker whose costs the others' are compared with; or empty
   Progress progress;
 };
 
@@ -32,9 +37,11 @@ struct Comparison {
   struct Pair {
     std::string a, b;
     std::vector<PairedDifference> differences;
+    std::vector<TimedDifference> at_times;
   };
   std::vector<Pair> pairs;
   std::vector<std::string> bounds;
+  std::optional<BoundSummary> cramer_rao;
   std::vector<std::pair<std::string, double>> ns_per_step;  ///< by tracker; timings, the only figures that vary
   std::vector<std::pair<std::string, Comparison>> sets;     ///< where there were several: each by itself
 

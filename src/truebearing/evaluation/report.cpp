@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "truebearing/evaluation/text_table.hpp"
+#include "truebearing/evaluation/time_table.hpp"
 #include "truebearing/io/json_file.hpp"
 
 namespace truebearing {
@@ -43,36 +45,31 @@ Json series_json(const Comparison& comparison, const TrackerSummary& summary) {
   return {{"time_s", numbers(comparison.time_s)}, {"rmse", rmse}};
 }
 
-std::string unit_of(const std::string& quantity) {
-  const std::size_t underscore = quantity.rfind('_');
-  const std::string unit = underscore == std::string::npos ? "" : quantity.substr(underscore + 1);
-  return unit == "mps" ? "m/s" : unit;
+Json metric_json(const Metric& metric) {
+  Json json{{"name", metric.name}, {"unit", metric.unit}};
+  if (metric.time_s) json["time_s"] = *metric.time_s;
+  json["value"] = number(metric.value);
+  json["se"] = number(metric.se);
+  return json;
 }
 
-std::string name_of(const std::string& quantity) {
-  return quantity.substr(0, quantity.rfind('_'));
-}
-
-// What a tracker has besides: the RMSE of each phase, and the largest of the series.
+// What a tracker has besides: the RMSE of each phase, the largest of the series, and figures at given times.
 Json metrics_json(const Comparison& comparison, const TrackerSummary& summary) {
   Json metrics = Json::array();
   for (const QuantitySummary& quantity : summary.quantities) {
     const auto add = [&](const std::string& what, double value, double se) {
-      metrics.push_back({{"name", fmt::format("{}_rmse_{}", name_of(quantity.name), what)},
-                         {"unit", unit_of(quantity.name)},
-                         {"value", number(value)},
-                         {"se", number(se)}});
+      metrics.push_back(metric_json(
+          {fmt::format("{}_rmse_{}", name_of(quantity.name), what), unit_of(quantity.name), std::nullopt, value, se}));
     };
-    metrics.push_back({{"name", fmt::format("{}_coverage95", name_of(quantity.name))},
-                       {"unit", "share"},
-                       {"value", number(quantity.coverage95)},
-                       {"se", nullptr}});
+    metrics.push_back(metric_json({fmt::format("{}_coverage95", name_of(quantity.name)), "share", std::nullopt,
+                                   quantity.coverage95, std::nan("")}));
     for (std::size_t i = 0; i < std::min(quantity.phases.size(), comparison.phases.size()); ++i)
       add(comparison.phases[i], quantity.phases[i].rmse, quantity.phases[i].rmse_se);
     double peak = std::nan("");
     for (const double value : quantity.series) peak = std::fmax(peak, value);
     if (!comparison.phases.empty()) add("peak", peak, std::nan(""));
   }
+  for (const Metric& metric : summary.metrics) metrics.push_back(metric_json(metric));
   return metrics;
 }
 
@@ -96,35 +93,6 @@ Json tracker_json(const Comparison& comparison, const TrackerSummary& summary) {
   json["metrics"] = metrics_json(comparison, summary);
   json["series"] = series_json(comparison, summary);
   return json;
-}
-
-// Three or four significant digits, without an exponent.
-std::string figure(double value) {
-  if (!std::isfinite(value)) return "-";
-  const double size = std::abs(value);
-  return size >= 1000.0  ? fmt::format("{:.0f}", value)
-         : size >= 100.0 ? fmt::format("{:.1f}", value)
-         : size >= 10.0  ? fmt::format("{:.2f}", value)
-                         : fmt::format("{:.3f}", value);
-}
-
-// Columns padded to the widest cell; the first to the left, the others to the right.
-std::string aligned(const std::vector<std::vector<std::string>>& rows) {
-  std::vector<std::size_t> widths;
-  for (const auto& row : rows)
-    for (std::size_t column = 0; column < row.size(); ++column) {
-      if (widths.size() <= column) widths.push_back(0);
-      widths[column] = std::max(widths[column], row[column].size());
-    }
-  std::string text;
-  for (const auto& row : rows) {
-    std::string line;
-    for (std::size_t column = 0; column < row.size(); ++column)
-      line += column == 0 ? fmt::format("{:<{}}", row[column], widths[column])
-                          : fmt::format("  {:>{}}", row[column], widths[column]);
-    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
-  }
-  return text;
 }
 
 using Columns = std::vector<QuantitySummary>;
@@ -196,7 +164,7 @@ std::string phase_table(const Comparison& comparison) {
 std::string tables(const Comparison& comparison) {
   std::vector<std::vector<std::string>> rows{heading(comparison)};
   for (const TrackerSummary& summary : comparison.trackers) rows.push_back(table_row(comparison, summary));
-  std::string text = aligned(rows) + phase_table(comparison);
+  std::string text = aligned(rows) + phase_table(comparison) + time_tables(comparison);
   if (comparison.pairs.empty()) return text;
   rows.assign(1, {"paired, per-run RMSE", "", "mean", "+-", "in standard errors"});
   for (const Comparison::Pair& pair : comparison.pairs)
@@ -219,11 +187,23 @@ void add_figures(const Comparison& comparison, Json& json) {
       entry["series"] = series_json(comparison, *bound);
       json["bounds"][name] = entry;
     }
+  if (comparison.cramer_rao) {
+    Json& entry = json["bounds"]["cramer_rao"];
+    entry["position_m"] = number(comparison.cramer_rao->position_m);
+    entry["velocity_mps"] = number(comparison.cramer_rao->velocity_mps);
+    entry["metrics"] = Json::array();
+    for (const Metric& metric : comparison.cramer_rao->metrics) entry["metrics"].push_back(metric_json(metric));
+  }
   json["paired"] = Json::object();
   for (const Comparison::Pair& pair : comparison.pairs) {
     Json& entry = json["paired"][pair.a + " - " + pair.b] = Json::object();
     for (const PairedDifference& difference : pair.differences)
       entry[difference.quantity] = {{"mean", number(difference.mean)}, {"se", number(difference.se)}};
+    for (const TimedDifference& difference : pair.at_times)
+      entry["at_times"].push_back({{"quantity", difference.quantity},
+                                   {"time_s", difference.time_s},
+                                   {"mean", number(difference.mean)},
+                                   {"se", number(difference.se)}});
   }
 }
 

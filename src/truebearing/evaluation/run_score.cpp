@@ -1,5 +1,6 @@
 #include "truebearing/evaluation/run_score.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -10,6 +11,14 @@ namespace truebearing {
 namespace {
 
 constexpr double kNotScored = std::numeric_limits<double>::quiet_NaN();
+
+void check_target_motion(const Recording& recording) {
+  const auto has_sensor = [](const Measurement& measurement) { return measurement.sensor.has_value(); };
+  if (recording.truth_space != &plane_space() ||
+      std::none_of(recording.measurements.begin(), recording.measurements.end(), has_sensor))
+    throw InputError("scoring.target_motion", "has no own ship to be relative to, or no truth in the plane",
+                     "measurements with own-ship columns");
+}
 
 }  // namespace
 
@@ -68,12 +77,15 @@ std::vector<RunScore> score_recording(TrackerSet& trackers, const std::vector<Sc
   if (recording.truth.size() != 1)
     throw InputError("scoring", "the recording has the truth of " + std::to_string(recording.truth.size()) + " targets",
                      "one");
+  if (rule.target_motion) check_target_motion(recording);
   const std::vector<BoundedVector>& truth = recording.truth.front().x;
   const std::size_t steps = recording.measurements.size();
+  const std::vector<int> time_steps = steps_at(recording, rule.times_s);
   std::vector<RunScore> scores(scorers.size());
   for (std::size_t i = 0; i < scorers.size(); ++i) {
     scorers[i].prepare(scores[i], steps);
     scores[i].phase = recording.truth.front().phase;
+    for (const int at : time_steps) scores[i].at_times.push_back({.step = at});
   }
 
   trackers.reset();
@@ -82,7 +94,11 @@ std::vector<RunScore> score_recording(TrackerSet& trackers, const std::vector<Sc
     if (static_cast<int>(step) + 1 < rule.from_step) continue;
     for (std::size_t i = 0; i < scorers.size(); ++i) {
       const std::span<const StepRecord> records = trackers.records(static_cast<int>(i));
-      if (!records.empty()) scorers[i].score_step(truth[step], records.front(), step, scores[i]);
+      if (records.empty()) continue;
+      scorers[i].score_step(truth[step], records.front(), step, scores[i]);
+      for (TimeScore& at : scores[i].at_times)
+        if (at.step == static_cast<int>(step))
+          at.take(truth[step], records.front(), recording.measurements[step].sensor, rule.target_motion);
     }
   }
   return scores;

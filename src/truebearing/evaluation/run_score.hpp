@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "truebearing/evaluation/time_score.hpp"
 #include "truebearing/evaluation/tracker_set.hpp"
 #include "truebearing/measurement/recording.hpp"
 
@@ -19,6 +20,7 @@ struct RunScore {
   int gate_limited = 0;                            ///< scored steps in which a correction was limited by kappa
   int corrected = 0;                               ///< scored steps of a corrected tracker
   double gate_sum = 0.0;                           ///< sum of the gate's weight over them
+  std::vector<TimeScore> at_times;                 ///< [time] of ScoringRule::times_s
 };
 
 /// What is scored.
@@ -26,6 +28,8 @@ struct ScoringRule {
   int from_step = 1;  ///< number of the first scored measurement, counted from 1
   /// A run is lost where the last scored error of a quantity passes its threshold.
   std::vector<std::pair<std::string, double>> loss_thresholds;
+  std::vector<double> times_s = {};  ///< at which figures are given besides, ascending
+  bool target_motion = false;        ///< and errors in range, course and speed with them
 };
 
 /// Where the components and quantities of a tracker's state are found in the truth; by name.

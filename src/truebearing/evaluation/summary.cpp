@@ -5,62 +5,25 @@
 #include <limits>
 
 #include "truebearing/core/chi_square.hpp"
+#include "truebearing/evaluation/statistics.hpp"
 
 namespace truebearing {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-struct SquaredErrors {
-  double sum = 0.0;
-  double count = 0.0;
-};
-
 SquaredErrors squared_errors(const std::vector<double>& errors) {
   SquaredErrors total;
   for (const double error : errors)
-    if (!std::isnan(error)) {
-      total.sum += error * error;
-      total.count += 1.0;
-    }
+    if (!std::isnan(error)) total.add(error);
   return total;
-}
-
-double root_mean(const SquaredErrors& errors) {
-  return errors.count > 0.0 ? std::sqrt(errors.sum / errors.count) : kNaN;
-}
-
-// Standard error of the pooled RMSE: the jackknife, one run left out at a time (Efron and Stein 1981).
-double jackknife_se(const std::vector<SquaredErrors>& runs, const SquaredErrors& total) {
-  std::vector<double> left_out;
-  for (const SquaredErrors& run : runs)
-    if (run.count > 0.0 && run.count < total.count)
-      left_out.push_back(root_mean({std::max(total.sum - run.sum, 0.0), total.count - run.count}));
-  const double n = static_cast<double>(left_out.size());
-  if (n < 2.0) return kNaN;
-  double mean = 0.0;
-  for (const double value : left_out) mean += value / n;
-  double squares = 0.0;
-  for (const double value : left_out) squares += (value - mean) * (value - mean);
-  return std::sqrt((n - 1.0) / n * squares);
-}
-
-double median_of(std::vector<double> values) {
-  if (values.empty()) return kNaN;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2 == 1) return *middle;
-  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
 }
 
 // The squared errors of a run's steps in that phase.
 SquaredErrors squared_errors_in(const std::vector<double>& errors, const std::vector<int>& phases, int phase) {
   SquaredErrors total;
   for (std::size_t step = 0; step < std::min(errors.size(), phases.size()); ++step)
-    if (phases[step] == phase && !std::isnan(errors[step])) {
-      total.sum += errors[step] * errors[step];
-      total.count += 1.0;
-    }
+    if (phases[step] == phase && !std::isnan(errors[step])) total.add(errors[step]);
   return total;
 }
 
@@ -71,13 +34,9 @@ std::vector<QuantitySummary::Phase> summarise_phases(std::size_t q, const std::v
   std::vector<QuantitySummary::Phase> phases;
   for (int phase = 0; phase < count; ++phase) {
     std::vector<SquaredErrors> runs;
-    SquaredErrors total;
-    for (const RunScore* score : scores) {
-      runs.push_back(squared_errors_in(score->error[q], score->phase, phase));
-      total.sum += runs.back().sum;
-      total.count += runs.back().count;
-    }
-    phases.push_back({root_mean(total), jackknife_se(runs, total)});
+    for (const RunScore* score : scores) runs.push_back(squared_errors_in(score->error[q], score->phase, phase));
+    const Estimate rmse = pooled_rmse(runs);
+    phases.push_back({rmse.value, rmse.se});
   }
   return phases;
 }
@@ -87,24 +46,21 @@ QuantitySummary summarise_quantity(const std::string& name, std::size_t q, int d
   QuantitySummary summary;
   summary.name = name;
   std::vector<SquaredErrors> runs;
-  SquaredErrors total;
   std::vector<double> all;
   std::vector<SquaredErrors> steps;
   for (const RunScore* score : scores) {
     const std::vector<double>& errors = score->error[q];
     runs.push_back(squared_errors(errors));
-    total.sum += runs.back().sum;
-    total.count += runs.back().count;
     steps.resize(std::max(steps.size(), errors.size()));
     for (std::size_t step = 0; step < errors.size(); ++step) {
       if (std::isnan(errors[step])) continue;
       all.push_back(errors[step]);
-      steps[step].sum += errors[step] * errors[step];
-      steps[step].count += 1.0;
+      steps[step].add(errors[step]);
     }
   }
-  summary.rmse = root_mean(total);
-  summary.rmse_se = jackknife_se(runs, total);
+  const Estimate rmse = pooled_rmse(runs);
+  summary.rmse = rmse.value;
+  summary.rmse_se = rmse.se;
   summary.median = median_of(std::move(all));
   for (const SquaredErrors& step : steps) summary.series.push_back(root_mean(step));
   summary.phases = summarise_phases(q, scores);
@@ -186,18 +142,8 @@ std::vector<PairedDifference> paired_difference(const Scorer& scorer_a, const st
             root_mean(squared_errors(a[run]->error[qa])) - root_mean(squared_errors(b[run]->error[qb]));
         if (!std::isnan(value)) values.push_back(value);
       }
-      const double n = static_cast<double>(values.size());
-      PairedDifference difference{scorer_a.quantities()[qa], kNaN, kNaN};
-      if (n >= 1.0) {
-        difference.mean = 0.0;
-        for (const double value : values) difference.mean += value / n;
-      }
-      if (n >= 2.0) {
-        double squares = 0.0;
-        for (const double value : values) squares += (value - difference.mean) * (value - difference.mean);
-        difference.se = std::sqrt(squares / (n - 1.0) / n);
-      }
-      differences.push_back(difference);
+      const Estimate mean = mean_of(values);
+      differences.push_back({scorer_a.quantities()[qa], mean.value, mean.se});
     }
   return differences;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "truebearing/evaluation/metric.hpp"
 #include "truebearing/evaluation/run_score.hpp"
 
 namespace truebearing {
@@ -31,9 +32,10 @@ struct TrackerSummary {
   double coverage95 = 0.0;  ///< share of them under the 95 % chi-square quantile
   double loss_rate = 0.0;
   long scored_steps = 0;
-  long corrected_steps = 0;    ///< of a corrected tracker, else 0
-  double limited_share = 0.0;  ///< share of the corrected steps that kappa limited
-  double mean_gate = 0.0;      ///< mean weight of the gate over the corrected steps
+  long corrected_steps = 0;     ///< of a corrected tracker, else 0
+  double limited_share = 0.0;   ///< share of the corrected steps that kappa limited
+  double mean_gate = 0.0;       ///< mean weight of the gate over the corrected steps
+  std::vector<Metric> metrics;  ///< figures at given times, and what else a problem has
 
   const QuantitySummary* quantity(const std::string& quantity_name) const;
 };

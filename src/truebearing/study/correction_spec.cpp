@@ -56,6 +56,7 @@ TrainingSpec read_training(TableReader& table) {
       table.choice_or("method", {"variable_projection", "back_propagation"}, "variable_projection");
   training.runs = static_cast<std::size_t>(table.integer("runs", 1, 1000000));
   training.from_step = static_cast<int>(table.integer_or("from_step", 1, 1, 1000000));
+  training.every_s = table.number_or("every_s", 0.0, kNonNegative);
   training.mirror = read_mirror(table);
   if (table.has("scenario")) training.scenario = table.resolve(table.text("scenario"));
   if (table.has("covariance_scenario")) training.covariance_scenario = table.resolve(table.text("covariance_scenario"));
@@ -115,7 +116,7 @@ CorrectionSpec read_correction_spec(TableReader& table) {
   spec.kappa = table.number_or("kappa", kInfinity, kPositive);
   spec.gate = read_gate(table);
   spec.referee = read_referee(table);
-  spec.frame = table.choice_or("frame", {"state", "track"}, "state") == "track" ? Frame::track : Frame::state;
+  spec.frame = frame_of(table.choice_or("frame", frame_names(), "state"));
   spec.output_in_sigma = table.choice_or("output_in", {"units", "sigma"}, "units") == "sigma";
   spec.covariance_moments = table.choice_or("covariance", {"inflation", "moments"}, "inflation") == "moments";
   spec.model = table.resolve(table.text("model"));

@@ -23,7 +23,8 @@ struct TrainingSpec {
   };
   Method method = Method::variable_projection;
   std::size_t runs = 400;
-  int from_step = 1;  ///< number of the first step taught, counted from 1
+  int from_step = 1;     ///< number of the first step taught, counted from 1
+  double every_s = 0.0;  ///< at most one step in as many seconds is taught; 0: every step
   enum class Mirror {
     none,
     images,  ///< teach every run and its mirror image

@@ -131,6 +131,8 @@ void Study::read_scoring(TableReader scoring) {
         throw scoring.error("pairs", "holds \"" + pair + "\"", "\"a - b\" with names of trackers");
       pairs_.emplace_back(known("pairs", pair.substr(0, dash)), known("pairs", pair.substr(dash + 3)));
     }
+  timed_ = read_timed_scoring(scoring, scenario_->truth_space(), scoring_);
+  if (!timed_.global_minimum.empty()) known("global_minimum", timed_.global_minimum);
   if (scoring.has("bounds"))
     for (const std::string& bound : scoring.texts("bounds")) bounds_.push_back(known("bounds", bound));
   scoring.finish();
@@ -327,6 +329,8 @@ ComparisonOptions Study::comparison_options() const {
   options.scoring = scoring_;
   options.pairs = pairs_;
   options.bounds = bounds_;
+  options.cramer_rao = timed_.cramer_rao;
+  options.global_minimum = timed_.global_minimum;
   return options;
 }
 

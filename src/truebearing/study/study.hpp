@@ -16,6 +16,7 @@
 #include "truebearing/study/correction_spec.hpp"
 #include "truebearing/study/parameters_file.hpp"
 #include "truebearing/study/recorded_file.hpp"
+#include "truebearing/study/timed_scoring.hpp"
 
 namespace truebearing {
 
@@ -97,6 +98,7 @@ class Study {
   std::size_t runs_ = 1000;
   std::size_t tuning_runs_ = 300;
   ScoringRule scoring_;
+  TimedScoring timed_;
   std::vector<std::pair<std::string, std::string>> pairs_;
   std::vector<std::string> bounds_;
   std::filesystem::path parameters_path_;

@@ -1,0 +1,61 @@
+#include "truebearing/evaluation/bound_summary.hpp"
+
+#include <array>
+#include <cmath>
+
+namespace truebearing {
+namespace {
+
+struct Bounded {
+  const char* name;
+  const char* unit;
+  double TargetMotionVariance::*variance;
+};
+constexpr std::array kBounded{
+    Bounded{"position_rmse", "m", &TargetMotionVariance::position_m2},
+    Bounded{"velocity_rmse", "m/s", &TargetMotionVariance::velocity_m2ps2},
+    Bounded{"range_error_rmse", "percent", &TargetMotionVariance::range_percent2},
+    Bounded{"course_error_rmse", "deg", &TargetMotionVariance::course_deg2},
+    Bounded{"speed_error_rmse", "m/s", &TargetMotionVariance::speed_m2ps2},
+};
+constexpr const char* kRange = "range_error_rmse";
+
+// Over runs, at one time. A run that does not reach the time has no step there, and NaN, as has one that is not
+// determined: neither has a bound.
+double mean_variance(const std::vector<const std::vector<TargetMotionVariance>*>& runs, std::size_t time,
+                     double TargetMotionVariance::*variance) {
+  double sum = 0.0;
+  for (const std::vector<TargetMotionVariance>* run : runs) sum += (*run)[time].*variance;
+  return sum / static_cast<double>(runs.size());
+}
+
+}  // namespace
+
+BoundSummary summarise_bound(const std::vector<const std::vector<TargetMotionVariance>*>& runs,
+                             const std::vector<double>& times_s) {
+  BoundSummary summary;
+  double position_m2 = 0.0, velocity_m2ps2 = 0.0;
+  for (std::size_t time = 0; time < times_s.size(); ++time) {
+    for (const Bounded& part : kBounded)
+      summary.metrics.push_back(
+          {part.name, part.unit, times_s[time], std::sqrt(mean_variance(runs, time, part.variance)), std::nan("")});
+    position_m2 += mean_variance(runs, time, &TargetMotionVariance::position_m2);
+    velocity_m2ps2 += mean_variance(runs, time, &TargetMotionVariance::velocity_m2ps2);
+  }
+  const double times = static_cast<double>(times_s.size());
+  summary.position_m = std::sqrt(position_m2 / times);
+  summary.velocity_mps = std::sqrt(velocity_m2ps2 / times);
+  return summary;
+}
+
+std::vector<Metric> range_efficiency(const std::vector<Metric>& tracker, const std::vector<Metric>& bound) {
+  std::vector<Metric> efficiency;
+  for (const Metric& reached : tracker)
+    for (const Metric& least : bound)
+      if (reached.name == kRange && least.name == kRange && reached.time_s == least.time_s)
+        efficiency.push_back(
+            {"range_efficiency", "1", reached.time_s, reached.value / least.value, reached.se / least.value});
+  return efficiency;
+}
+
+}  // namespace truebearing

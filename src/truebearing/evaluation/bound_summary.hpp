@@ -1,0 +1,27 @@
+// The Cramer-Rao bound over the runs of a comparison: the root of the mean over runs of their variances.
+#pragma once
+
+#include <vector>
+
+#include "truebearing/evaluation/metric.hpp"
+#include "truebearing/evaluation/target_motion_bound.hpp"
+
+namespace truebearing {
+
+struct BoundSummary {
+  double position_m = 0.0;  ///< over runs and times
+  double velocity_mps = 0.0;
+  /// position_rmse, velocity_rmse, range_error_rmse, course_error_rmse, speed_error_rmse at each time: what the metrics
+  /// of those names cannot fall below. NaN where the state of any run is not determined yet.
+  std::vector<Metric> metrics;
+};
+
+/// runs: [run][time].
+BoundSummary summarise_bound(const std::vector<const std::vector<TargetMotionVariance>*>& runs,
+                             const std::vector<double>& times_s);
+
+/// `range_efficiency` at each time: range_error_rmse of a tracker over that of the bound. Empty where the tracker has
+/// none.
+std::vector<Metric> range_efficiency(const std::vector<Metric>& tracker, const std::vector<Metric>& bound);
+
+}  // namespace truebearing

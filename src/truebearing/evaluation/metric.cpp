@@ -1,0 +1,15 @@
+#include "truebearing/evaluation/metric.hpp"
+
+namespace truebearing {
+
+std::string unit_of(const std::string& quantity) {
+  const std::size_t underscore = quantity.rfind('_');
+  const std::string unit = underscore == std::string::npos ? "" : quantity.substr(underscore + 1);
+  return unit == "mps" ? "m/s" : unit == "hz" ? "Hz" : unit;
+}
+
+std::string name_of(const std::string& quantity) {
+  return quantity.substr(0, quantity.rfind('_'));
+}
+
+}  // namespace truebearing

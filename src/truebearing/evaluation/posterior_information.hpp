@@ -1,0 +1,60 @@
+// The Fisher information about the state x_k (n) of a target that moves linearly, x' = F x + w, w ~ N(0, Q), carried
+// along with it:
+//     J' = (F J^-1 F' + Q)^-1 = (I + M Q)^-1 M,  M = F^-T J F^-1,        J <- J + H' R^-1 H
+// which is the recursion of Tichavsky, Muravchik and Nehorai 1998, equation (21), written so that neither J nor Q need
+// have an inverse: without a prior J begins at zero, and without process noise it is the information of Cramer and Rao.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <optional>
+
+#include "truebearing/measurement/fisher_information.hpp"
+
+namespace truebearing {
+
+template <int States>
+class PosteriorInformation {
+ public:
+  using Matrix = Eigen::Matrix<double, States, States>;
+  using State = Eigen::Matrix<double, States, 1>;
+
+  /// Adds what is believed beforehand: a Gaussian of covariance P, positive definite.
+  void add_prior(const Matrix& P) { J_ += P.llt().solve(Matrix::Identity()); }
+
+  void predict(const Matrix& F, const Matrix& Q) {
+    const Eigen::PartialPivLU<Matrix> transposed(F.transpose());
+    const Matrix half = transposed.solve(J_);                         // F^-T J
+    const Matrix M = transposed.solve(half.transpose()).transpose();  // (F^-T J) F^-1
+    J_ = Eigen::PartialPivLU<Matrix>(Matrix::Identity() + M * Q).solve(M);
+    J_ = (0.5 * (J_ + J_.transpose())).eval();
+  }
+
+  /// One measurement of the true state x.
+  template <MeasurementModel Model>
+  void update(const Model& model, const State& x) {
+    J_ += fisher_information(model, x, Matrix::Identity().eval());
+  }
+
+  const Matrix& J() const { return J_; }
+
+  /// The bound J^-1, or nothing where the measurements do not determine the state: where J, scaled to ones on its
+  /// diagonal, is singular but for rounding.
+  std::optional<Matrix> covariance() const {
+    constexpr double kRounding = 1e-13;
+    if (!((J_.diagonal().array() > 0.0).all())) return std::nullopt;
+    const State scale = J_.diagonal().array().rsqrt();
+    const Matrix scaled = scale.asDiagonal() * J_ * scale.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Matrix> modes(scaled);
+    if (modes.eigenvalues()(0) < kRounding * modes.eigenvalues()(States - 1)) return std::nullopt;
+    const Matrix P = scaled.llt().solve(Matrix::Identity());
+    return Matrix(scale.asDiagonal() * P * scale.asDiagonal());
+  }
+
+ private:
+  Matrix J_ = Matrix::Zero();
+};
+
+}  // namespace truebearing

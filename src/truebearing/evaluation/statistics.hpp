@@ -1,0 +1,43 @@
+// Statistics over Monte Carlo runs that every figure of a comparison is made of: pooled RMSE, means, medians and their
+// standard errors. What cannot be said of so few values is NaN.
+#pragma once
+
+#include <vector>
+
+namespace truebearing {
+
+/// Squared errors of one run, or of several: their sum and how many they are.
+struct SquaredErrors {
+  double sum = 0.0;
+  double count = 0.0;
+
+  void add(double error) {
+    sum += error * error;
+    count += 1.0;
+  }
+  void add(const SquaredErrors& other) {
+    sum += other.sum;
+    count += other.count;
+  }
+};
+
+double root_mean(const SquaredErrors& errors);
+
+/// A figure and its standard error.
+struct Estimate {
+  double value;
+  double se;
+};
+
+/// RMSE pooled over runs. Its standard error is the jackknife, one run left out at a time (Efron and Stein 1981); runs
+/// without errors are passed over.
+Estimate pooled_rmse(const std::vector<SquaredErrors>& runs);
+
+/// Mean of independent values.
+Estimate mean_of(const std::vector<double>& values);
+/// Their standard deviation, about the mean, over n - 1; its standard error is the jackknife.
+Estimate standard_deviation_of(const std::vector<double>& values);
+/// The middle; of an even number the mean of the two in the middle.
+double median_of(std::vector<double> values);
+
+}  // namespace truebearing

@@ -1,0 +1,112 @@
+#include "truebearing/evaluation/time_table.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <vector>
+
+#include "truebearing/evaluation/text_table.hpp"
+
+namespace truebearing {
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+
+// What is printed of the figures at times: the rest is for programs.
+bool is_printed(const std::string& name) {
+  return name.ends_with("_rmse") || name == "range_error_mean" || name == "range_error_std" ||
+         name == "range_efficiency" || name == "loss_rate";
+}
+
+// Those metrics of all trackers that `belongs` picks, each name once, in the order in which they first come.
+template <typename Belongs>
+std::vector<Metric> kinds(const Comparison& comparison, const Belongs& belongs) {
+  std::vector<Metric> found;
+  for (const TrackerSummary& summary : comparison.trackers)
+    for (const Metric& metric : summary.metrics) {
+      const auto same = [&](const Metric& other) { return other.name == metric.name; };
+      if (belongs(metric) && std::none_of(found.begin(), found.end(), same)) found.push_back(metric);
+    }
+  return found;
+}
+
+std::vector<double> times_of(const Comparison& comparison, const std::string& name) {
+  std::vector<double> times_s;
+  for (const TrackerSummary& summary : comparison.trackers)
+    for (const Metric& metric : summary.metrics)
+      if (metric.name == name && std::find(times_s.begin(), times_s.end(), *metric.time_s) == times_s.end())
+        times_s.push_back(*metric.time_s);
+  return times_s;
+}
+
+std::string value_at(const std::vector<Metric>& metrics, const std::string& name, std::optional<double> time_s) {
+  for (const Metric& metric : metrics)
+    if (metric.name == name && metric.time_s == time_s) return figure(metric.value);
+  return "-";
+}
+
+std::string title(const Metric& kind) {
+  std::string words = kind.name;
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return kind.unit == "1" || kind.unit == "share" ? words : words + " " + kind.unit;
+}
+
+void add_block(const Comparison& comparison, const Metric& kind, Rows& rows) {
+  const std::vector<double> times_s = times_of(comparison, kind.name);
+  rows.push_back({title(kind)});
+  for (const double time_s : times_s) rows.back().push_back(fmt::format("{:g} s", time_s));
+  const auto add_row = [&](const std::string& name, const std::vector<Metric>& metrics) {
+    if (std::none_of(metrics.begin(), metrics.end(), [&](const Metric& metric) { return metric.name == kind.name; }))
+      return;
+    rows.push_back({"  " + name});
+    for (const double time_s : times_s) rows.back().push_back(value_at(metrics, kind.name, time_s));
+  };
+  for (const TrackerSummary& summary : comparison.trackers) add_row(summary.name, summary.metrics);
+  if (comparison.cramer_rao) add_row("cramer_rao", comparison.cramer_rao->metrics);
+}
+
+// "a - b, position" by time: the mean difference, and how many of its standard errors that is.
+void add_pairs(const Comparison& comparison, Rows& rows) {
+  for (const Comparison::Pair& pair : comparison.pairs) {
+    std::string quantity;
+    for (const TimedDifference& difference : pair.at_times) {
+      if (quantity != difference.quantity) {
+        quantity = difference.quantity;
+        rows.push_back({fmt::format("  {} - {}, {} {}", pair.a, pair.b, name_of(quantity), unit_of(quantity))});
+      }
+      rows.back().push_back(difference.se > 0.0
+                                ? fmt::format("{} ({:+.1f})", figure(difference.mean), difference.mean / difference.se)
+                                : figure(difference.mean));
+    }
+  }
+}
+
+}  // namespace
+
+std::string time_tables(const Comparison& comparison) {
+  std::string text;
+  Rows rows;
+  std::vector<double> times_s;
+  for (const Metric& kind :
+       kinds(comparison, [](const Metric& metric) { return metric.time_s && is_printed(metric.name); })) {
+    add_block(comparison, kind, rows);
+    if (times_s.empty()) times_s = times_of(comparison, kind.name);
+  }
+  if (!rows.empty()) text.append("\n").append(aligned(rows));
+
+  rows.assign(1, {"paired, error norms (standard errors)"});
+  for (const double time_s : times_s) rows.back().push_back(fmt::format("{:g} s", time_s));
+  add_pairs(comparison, rows);
+  if (rows.size() > 1) text.append("\n").append(aligned(rows));
+
+  const std::vector<Metric> timeless = kinds(comparison, [](const Metric& metric) { return !metric.time_s; });
+  if (timeless.empty()) return text;
+  rows.assign(1, {"tracker"});
+  for (const Metric& kind : timeless) rows.back().push_back(title(kind));
+  for (const TrackerSummary& summary : comparison.trackers) {
+    rows.push_back({summary.name});
+    for (const Metric& kind : timeless) rows.back().push_back(value_at(summary.metrics, kind.name, std::nullopt));
+  }
+  return text.append("\n").append(aligned(rows));
+}
+
+}  // namespace truebearing

@@ -1,0 +1,136 @@
+#include "truebearing/evaluation/target_motion_bound.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/error_message.hpp"
+#include "truebearing/core/angle.hpp"
+#include "truebearing/evaluation/time_score.hpp"
+#include "truebearing/simulation/bearings_only_scenario.hpp"
+
+namespace truebearing {
+namespace {
+
+using testing::error_message;
+using ::testing::HasSubstr;
+
+Recording simulated(const std::string& scenario) {
+  return load_scenario(std::string(TRUEBEARING_SOURCE_DIR) + "/data/scenarios/" + scenario)->simulate({});
+}
+
+TargetMotionVariance at(const TargetMotionBound& bound, const Recording& recording, double time_s) {
+  return bound.variances(recording, steps_at(recording, {time_s})).front();
+}
+
+// problems/bearings-only.md, prototype figures. The prototype took no bearing at the very end of a turn, which falls on a
+// sample in the first scenario alone.
+TEST(TargetMotionBound, IsThatOfThePublishedGeometries) {
+  const auto expect = [](const std::string& scenario, double time_s, double percent) {
+    Recording recording = simulated(scenario);
+    if (scenario == "cho_s1.toml") recording.measurements[65].z[0] = std::nan("");  // 260 s
+    EXPECT_NEAR(std::sqrt(at({}, recording, time_s).range_percent2), percent, 0.015 * percent) << scenario << time_s;
+  };
+  expect("cho_s1.toml", 280.0, 39.7);
+  expect("cho_s2.toml", 240.0, 118.0);
+  expect("cho_s3.toml", 240.0, 62.0);
+  expect("cho_s1.toml", 480.0, 22.3);
+  expect("cho_s2.toml", 480.0, 34.0);
+  expect("cho_s3.toml", 480.0, 10.8);
+}
+
+TEST(TargetMotionBound, CourseAndSpeedInTheFirstGeometry) {
+  const Recording recording = simulated("cho_s1.toml");
+  const double times_s[] = {480.0, 1000.0, 3600.0}, course_deg[] = {15.4, 0.73, 0.29}, speed[] = {0.63, 0.077, 0.030};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const TargetMotionVariance variance = at({}, recording, times_s[i]);
+    EXPECT_NEAR(std::sqrt(variance.course_deg2), course_deg[i], 0.02 * course_deg[i]);
+    EXPECT_NEAR(std::sqrt(variance.speed_m2ps2), speed[i], 0.03 * speed[i]);
+    EXPECT_NEAR(variance.velocity_m2ps2,
+                variance.speed_m2ps2 + 25.0 * variance.course_deg2 * radians(1.0) * radians(1.0), 1e-9);
+  }
+}
+
+// Arulampalam et al. 2004: km at k = 20, 25 and 32, k = 0 at the guess and own ship's turns at k = 13 to 16. Theirs is an
+// expectation over targets with process noise, this one is along a straight course.
+TEST(TargetMotionBound, WithItsPriorIsThePublishedPosteriorBound) {
+  TargetMotionBound bound;
+  bound.q_m2ps3 = 9e-6;
+  bound.prior = RangePrior{};
+  bound.prior->range_sigma_m = 2000.0;
+  bound.prior->course = RangePrior::Course{2.056, 1.028, kPi, kPi / std::sqrt(12.0)};
+  BearingsOnlyParameters parameters;
+  parameters.period_s = 60.0;
+  parameters.duration_s = 1920.0;
+  parameters.own_ship.speed_mps = 2.57;
+  parameters.own_ship.course_deg = 140.0;
+  for (int k = 13; k <= 16; ++k) {
+    VesselParameters::Turn turn;
+    turn.time_s = 60.0 * k;
+    turn.angle_deg = -30.0;
+    turn.rate_degps = 1e6;
+    parameters.own_ship.turns.push_back(turn);
+  }
+  parameters.range_m = 4992.9;
+  parameters.bearing_deg = 80.198;
+  parameters.target.speed_mps = 2.056;
+  parameters.target.course_deg = -140.0;
+  parameters.sensor.sigma_rad = radians(1.5);
+  const Recording recording = BearingsOnlyScenario(parameters).simulate({});
+  const double published_km[] = {0.128, 0.054, 0.088}, k[] = {20.0, 25.0, 32.0};
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_NEAR(1e-3 * std::sqrt(at(bound, recording, 60.0 * k[i]).position_m2), published_km[i], 0.03 * published_km[i]);
+}
+
+TEST(TargetMotionBound, BeforeOwnShipTurnsThereIsNoneWithoutAPrior) {
+  const Recording recording = simulated("cho_s1.toml");
+  TargetMotionBound bound;
+  EXPECT_TRUE(std::isnan(at(bound, recording, 200.0).range_percent2));
+  EXPECT_TRUE(std::isnan(at(bound, recording, 0.0).range_percent2));
+  bound.prior = RangePrior{.range_m = 1.0, .range_sigma_m = 3000.0, .between = {}, .velocity_sigma_mps = 4.0, .course = {}};
+  EXPECT_NEAR(std::sqrt(at(bound, recording, 0.0).range_percent2), 50.0, 1e-6) << "3 km of the true 6 km";
+  const double before = at(bound, recording, 200.0).range_percent2;
+  EXPECT_GT(before, 0.0);
+  EXPECT_LT(at(bound, recording, 280.0).range_percent2, at(TargetMotionBound{}, recording, 280.0).range_percent2);
+}
+
+TEST(TargetMotionBound, MissingBearingsAddNothingAndOthersCountByTheirSigma) {
+  Recording recording = simulated("cho_s3.toml");
+  const double whole = at({}, recording, 1000.0).position_m2;
+  for (std::size_t k = 0; k < recording.measurements.size(); k += 2) recording.measurements[k].z[0] = std::nan("");
+  EXPECT_NEAR(at({}, recording, 1000.0).position_m2 / whole, 2.0, 0.1);
+
+  recording = simulated("cho_s3.toml");
+  for (Measurement& measurement : recording.measurements) measurement.sigma *= 3.0;
+  EXPECT_NEAR(at({}, recording, 1000.0).position_m2 / whole, 9.0, 1e-6);
+  for (Measurement& measurement : recording.measurements) measurement.sigma.resize(0);
+  TargetMotionBound bound;
+  EXPECT_THAT(error_message([&] { at(bound, recording, 1000.0); }), HasSubstr("bearing_sigma_deg"));
+  bound.bearing_sigma_rad = radians(1.0);
+  EXPECT_NEAR(at(bound, recording, 1000.0).position_m2 / whole, 1.0, 1e-9);
+}
+
+TEST(TargetMotionBound, StateAtATimeIsThatOfTheStep) {
+  const Recording recording = simulated("cho_s1.toml");
+  EXPECT_EQ(at({}, recording, 1001.0).position_m2, at({}, recording, 1000.0).position_m2);
+  EXPECT_NE(at({}, recording, 1004.0).position_m2, at({}, recording, 1000.0).position_m2);
+}
+
+TEST(TargetMotionBound, WhatItDoesNotHoldForIsRefused) {
+  Recording recording = simulated("cho_s1.toml");
+  const TargetMotionBound bound;
+  recording.truth[0].x[40][2] += 0.5;
+  EXPECT_THAT(error_message([&] { at(bound, recording, 1000.0); }), ::testing::AllOf(HasSubstr("160 s"), HasSubstr("q_m2ps3")));
+  TargetMotionBound with_noise;
+  with_noise.q_m2ps3 = 1e-3;
+  EXPECT_GT(at(with_noise, recording, 1000.0).position_m2, 0.0);
+  recording.measured = {"east_m", "north_m"};
+  EXPECT_THAT(error_message([&] { at(bound, recording, 1000.0); }), HasSubstr("east_m, north_m"));
+  recording = simulated("cho_s1.toml");
+  recording.measurements[3].sensor.reset();
+  EXPECT_THAT(error_message([&] { at(bound, recording, 1000.0); }), HasSubstr("own ship"));
+}
+
+}  // namespace
+}  // namespace truebearing

@@ -1,6 +1,8 @@
 #include "training/teacher.hpp"
 
 #include <Eigen/Cholesky>
+#include <cmath>
+#include <limits>
 #include <optional>
 
 #include "truebearing/core/error.hpp"
@@ -23,6 +25,7 @@ class RowMaker {
   RowMaker(const Ensemble& ensemble, const CorrectionSpec& correction)
       : ensemble_(ensemble.clone()),
         from_step_(correction.training.from_step),
+        every_s_(correction.training.every_s),
         base_(ensemble_.index(correction.base)),
         reference_(ensemble_.index(correction.reference)),
         source_(ensemble_.index(correction.covariance_of)),
@@ -37,6 +40,7 @@ class RowMaker {
 
   std::vector<Row> rows(const Recording& recording) {
     std::vector<Row> rows;
+    double next_s = -std::numeric_limits<double>::infinity();
     ensemble_.reset();
     extractor_.reset();
     for (std::size_t step = 0; step < recording.measurements.size(); ++step) {
@@ -49,8 +53,11 @@ class RowMaker {
       extractor_.extract(base, companion_records_, row.features);  // every step, for the averages
       const StepRecord* reference = ensemble_.record(reference_, base.track);
       const StepRecord* source = ensemble_.record(source_, base.track);
-      if (static_cast<int>(step) + 1 < from_step_ || !reference || !source || base.status == StepStatus::failed)
+      if (static_cast<int>(step) + 1 < from_step_ || base.time_s < next_s || !reference || !source ||
+          base.status == StepStatus::failed)
         continue;
+      // The first step in every interval, so that steps of another period do not drift through it.
+      if (every_s_ > 0.0) next_s = every_s_ * (std::floor(base.time_s / every_s_) + 1.0);
       // T into the frame, then 1 / D.
       const FrameRotation& rotation = extractor_.rotation();
       BoundedVector scale = BoundedVector::Ones(base.x.size());
@@ -74,6 +81,7 @@ class RowMaker {
  private:
   Ensemble ensemble_;
   int from_step_;
+  double every_s_;
   int base_;
   int reference_;
   int source_;

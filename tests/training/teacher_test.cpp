@@ -130,6 +130,19 @@ TEST(Teacher, FirstStepTaughtIsAsAskedButAveragesSeeAll) {
   EXPECT_EQ(tail.X.topRows(20), all.X.middleRows(10, 20));
 }
 
+TEST(Teacher, TeachesTheFirstStepInEverySoManySeconds) {
+  const LineScenario scenario = testing::radar_family(30);  // at 1, 2, ... 30 s
+  CorrectionSpec sparse = spec(2);
+  sparse.training.every_s = 5.0;
+  const TeacherSet all = collect_teacher_set(ensemble(), spec(2), scenario, {});
+  const TeacherSet some = collect_teacher_set(ensemble(), sparse, scenario, {});
+  const std::vector<Eigen::Index> taught{0, 4, 9, 14, 19, 24, 29};
+  ASSERT_EQ(some.X.rows(), 2 * 7);
+  for (Eigen::Index run = 0; run < 2; ++run)
+    for (Eigen::Index i = 0; i < 7; ++i)
+      EXPECT_EQ(some.X.row(7 * run + i), all.X.row(30 * run + taught[static_cast<std::size_t>(i)]));
+}
+
 TEST(Teacher, RowsAreTheSameForAnyNumberOfThreads) {
   const LineScenario scenario = testing::radar_family(30);
   const TeacherSet one = collect_teacher_set(ensemble(), spec(20), scenario, {.threads = 1, .progress = {}});

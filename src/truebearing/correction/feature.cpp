@@ -36,7 +36,7 @@ constexpr auto kComponent = FeatureNeeds::Component::required;
 constexpr auto kAxis = FeatureNeeds::Component::optional;
 
 // One line per kind: everything the house knows of it besides its formula, which is in feature_extractor.cpp.
-constexpr std::array<Kind, 15> kKinds{{
+constexpr std::array<Kind, 20> kKinds{{
     {FeatureKind::log_step, "log_step", Mirror::even, {.blocks = kNothing}},
     {FeatureKind::gain, "gain", Mirror::even, {.component = kComponent, .blocks = kGain}},
     {FeatureKind::residual, "residual", Mirror::by_component, {.component = kComponent, .blocks = kInnovation}},
@@ -79,6 +79,17 @@ constexpr std::array<Kind, 15> kKinds{{
      "mode_probability",
      Mirror::even,
      {.companion = kOptional, .mode = true, .blocks = kModes}},
+    {FeatureKind::log_range, "log_range", Mirror::even, {.companion = kOptional, .plane = true, .blocks = kNothing}},
+    {FeatureKind::log_first_range, "log_first_range", Mirror::even, {.plane = true, .blocks = kNothing}},
+    {FeatureKind::log_time, "log_time", Mirror::even, {.blocks = kNothing}},
+    {FeatureKind::bearing_rate,
+     "bearing_rate",
+     Mirror::odd,
+     {.companion = kOptional, .plane = true, .blocks = kNothing}},
+    {FeatureKind::own_velocity,
+     "own_velocity",
+     Mirror::by_component,
+     {.component = kComponent, .velocity = true, .scale = true, .plane = true, .blocks = kNothing}},
 }};
 
 const Kind& entry(FeatureKind kind) {
@@ -156,6 +167,16 @@ std::string describe(const FeatureSpec& feature) {
       return "sine of the aspect";
     case FeatureKind::mode_probability:
       return fmt::format("probability of mode {}{}", feature.mode, of);
+    case FeatureKind::log_range:
+      return "ln range" + of;
+    case FeatureKind::log_first_range:
+      return "ln first range";
+    case FeatureKind::log_time:
+      return "ln time";
+    case FeatureKind::bearing_rate:
+      return "bearing rate" + of;
+    case FeatureKind::own_velocity:
+      return "own velocity in " + feature.component;
   }
   return {};
 }

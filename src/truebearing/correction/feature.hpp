@@ -27,7 +27,12 @@ enum class FeatureKind {
   log_speed,              ///< ln of the speed, at least 1e-3 m/s; plane space
   aspect_cosine,          ///< of the angle from the line of sight to the velocity; plane space
   aspect_sine,            ///< positive where the target crosses to starboard of the line of sight
-  mode_probability        ///< mu[mode] of a multiple-model tracker
+  mode_probability,       ///< mu[mode] of a multiple-model tracker
+  log_range,              ///< ln of the distance from the sensor, at least 1 m; plane space
+  log_first_range,  ///< ln of the distance with which the track began, at least 1 m: what was believed; plane space
+  log_time,         ///< ln of the time since the track began, at least 1 s
+  bearing_rate,     ///< d bearing/dt of the estimate as the sensor sees it from its own course, rad/s; plane space
+  own_velocity      ///< the sensor's velocity[component] / scale; plane space
 };
 
 /// Which feature, and its constants. What a kind does not use stays at its default. Components are those of the frame
@@ -61,6 +66,7 @@ struct FeatureNeeds {
 
   Component component = Component::none;
   Companion companion = Companion::none;
+  bool velocity = false;  ///< the component is one of a velocity
   bool alpha = false;
   bool offset = false;
   bool scale = false;

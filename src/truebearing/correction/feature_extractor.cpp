@@ -25,6 +25,10 @@ void check(const FeatureSpec& feature, const StateSpace& space, const StateSpace
   const bool measured = needs.component == FeatureNeeds::Component::optional || feature.kind == FeatureKind::residual;
   if (measured && component >= components.size() / 2 && component > 0)
     throw InputError(where, fmt::format("component \"{}\" is not measured", feature.component), "a position");
+  if (needs.velocity && component < components.size() / 2)
+    throw InputError(where, fmt::format("component \"{}\" is no velocity", feature.component),
+                     suggestion(feature.component,
+                                {components.components.begin() + components.size() / 2, components.components.end()}));
   if (needs.plane && space != plane_space())
     throw InputError(where, "has no meaning in the space " + space.name, "the space plane");
   if (needs.mode && (feature.mode < 1 || feature.mode > kMaxDimension))
@@ -48,6 +52,14 @@ void check(const FeatureSpec& feature, const StateSpace& space, const StateSpace
   if (measured && &space != &components && !blocks.measures_position)
     throw InputError(where, "has no direction: what is measured is not a position", "a tracker of positions");
   if (needs.blocks.mode_probabilities && !blocks.mode_probabilities) throw missing("mode probabilities");
+}
+
+constexpr double kLeastRange_m = 1.0;
+
+// Of states that have no plane, and no feature that wants this, it is some number.
+double log_range(const BoundedVector& x, const SensorState& own) {
+  const Eigen::Index m = std::min<Eigen::Index>(x.size(), 2);
+  return std::log(std::max((x.head(m) - own.position_m.head(m)).norm(), kLeastRange_m));
 }
 
 }  // namespace
@@ -77,8 +89,10 @@ void FeatureExtractor::reset() {
   track_ = -1;
 }
 
-void FeatureExtractor::begin_track(int track) {
-  track_ = track;
+void FeatureExtractor::begin_track(const StepRecord& base) {
+  track_ = base.track;
+  began_s_ = base.time_s;
+  log_first_range_ = log_range(base.x, base.sensor.value_or(SensorState{}));
   steps_ = 0.0;
   gain_.resize(0, 0);
   for (Term& term : terms_) {
@@ -89,10 +103,10 @@ void FeatureExtractor::begin_track(int track) {
 
 void FeatureExtractor::extract(const StepRecord& base, std::span<const StepRecord* const> companions,
                                Features& features) {
-  if (base.track != track_) begin_track(base.track);
+  if (base.track != track_) begin_track(base);
   if (base.status == StepStatus::ok) steps_ += 1.0;
   if (base.status == StepStatus::ok && base.gain) gain_ = *base.gain;
-  rotation_ = FrameRotation(frame_, base.x);
+  rotation_ = FrameRotation(frame_, base.x, base.sensor);
   if (wants_sigma_) sigma_ = rotation_.covariance(base.P).diagonal().cwiseSqrt();
   features.resize(size());
   for (int i = 0; i < size(); ++i) {
@@ -144,13 +158,18 @@ void FeatureExtractor::remember(Term& term, const StepRecord& record) {
     case FeatureKind::aspect_cosine:
     case FeatureKind::aspect_sine:
     case FeatureKind::mode_probability:
+    case FeatureKind::log_range:
+    case FeatureKind::log_first_range:
+    case FeatureKind::log_time:
+    case FeatureKind::bearing_rate:
+    case FeatureKind::own_velocity:
       break;
   }
 }
 
 double FeatureExtractor::value(const Term& term, const StepRecord& base, const StepRecord* companion) const {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  constexpr double kLeastSpeed_mps = 1e-3;
+  constexpr double kLeastSpeed_mps = 1e-3, kLeastTime_s = 1.0;
   if (term.companion >= 0 && !companion) return kNaN;
   const StepRecord& record = companion ? *companion : base;
   if (record.x.size() != base.x.size()) return kNaN;
@@ -160,6 +179,7 @@ double FeatureExtractor::value(const Term& term, const StepRecord& base, const S
     if (rotation_.rotates() && v.size() < 2) return 0.0;
     return c < v.size() ? rotation_.component(v, c) : 0.0;
   };
+  const SensorState own = base.sensor.value_or(SensorState{});
   const auto scaled = [&](double value) { return value / (term.scale_is_sigma ? sigma_[c] : term.scale); };
   switch (term.kind) {
     case FeatureKind::log_step:
@@ -189,8 +209,7 @@ double FeatureExtractor::value(const Term& term, const StepRecord& base, const S
       return std::log(std::max(record.x.tail<2>().norm(), kLeastSpeed_mps));
     case FeatureKind::aspect_cosine:
     case FeatureKind::aspect_sine: {
-      Eigen::Vector2d sight = base.x.head<2>();
-      if (base.sensor) sight -= base.sensor->position_m;
+      const Eigen::Vector2d sight = base.x.head<2>() - own.position_m;
       const Eigen::Vector2d v = base.x.tail<2>();
       const double size = sight.norm() * v.norm();
       if (!(size > 0.0)) return 0.0;
@@ -200,6 +219,18 @@ double FeatureExtractor::value(const Term& term, const StepRecord& base, const S
     case FeatureKind::mode_probability:
       if (!record.mode_probabilities || term.mode >= record.mode_probabilities->size()) return kNaN;
       return (*record.mode_probabilities)[term.mode];
+    case FeatureKind::log_range:
+      return log_range(record.x, own);
+    case FeatureKind::log_first_range:
+      return log_first_range_;
+    case FeatureKind::log_time:
+      return std::log(std::max(base.time_s - began_s_, kLeastTime_s));
+    case FeatureKind::bearing_rate: {
+      const Eigen::Vector2d d = record.x.head<2>() - own.position_m, v = record.x.tail<2>() - own.velocity_mps;
+      return (v.x() * d.y() - v.y() * d.x()) / std::max(d.squaredNorm(), kLeastRange_m * kLeastRange_m);
+    }
+    case FeatureKind::own_velocity:
+      return rotation_.component(own.velocity_mps, c % 2) / term.scale;
   }
   return kNaN;
 }

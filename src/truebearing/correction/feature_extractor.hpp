@@ -51,7 +51,7 @@ class FeatureExtractor {
     double used = 0.0;  // steps in which the measurement was used
   };
 
-  void begin_track(int track);
+  void begin_track(const StepRecord& base);
   static void remember(Term& term, const StepRecord& record);
   double value(const Term& term, const StepRecord& base, const StepRecord* companion) const;
 
@@ -64,6 +64,8 @@ class FeatureExtractor {
   BoundedVector sigma_;     // the base's standard deviations in the frame, where a feature wants them
   BoundedMatrix gain_;      // of the last used measurement
   int track_ = -1;
+  double began_s_ = 0.0;
+  double log_first_range_ = 0.0;
   double steps_ = 0.0;
 };
 

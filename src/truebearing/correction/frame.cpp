@@ -5,16 +5,31 @@
 namespace truebearing {
 
 const StateSpace& space_in(Frame frame, const StateSpace& space) {
-  static const StateSpace track{
-      "track", {"along_m", "cross_m", "along_mps", "cross_mps"}, {{"position_m", {0, 1}}, {"velocity_mps", {2, 3}}}};
+  static const auto turned = [](const char* name) {
+    return StateSpace{
+        name, {"along_m", "cross_m", "along_mps", "cross_mps"}, {{"position_m", {0, 1}}, {"velocity_mps", {2, 3}}}};
+  };
+  static const StateSpace track = turned("track"), sight = turned("sight");
   if (frame == Frame::state) return space;
   if (space != plane_space())
-    throw InputError("frame", "is track, and the state is of the space " + space.name, "the space plane");
-  return track;
+    throw InputError("frame", "is " + std::string(to_string(frame)) + ", and the state is of the space " + space.name,
+                     "the space plane");
+  return frame == Frame::track ? track : sight;
 }
 
 std::string_view to_string(Frame frame) {
-  return frame == Frame::track ? "track" : "state";
+  return frame_names()[static_cast<std::size_t>(frame)];
+}
+
+const std::vector<std::string>& frame_names() {
+  static const std::vector<std::string> names{"state", "track", "sight"};
+  return names;
+}
+
+Frame frame_of(std::string_view name) {
+  for (const Frame frame : {Frame::track, Frame::sight})
+    if (name == to_string(frame)) return frame;
+  return Frame::state;
 }
 
 }  // namespace truebearing

@@ -1,40 +1,50 @@
 // The frame that a correction works in. Where a target flies to does not matter to how a filter lags behind it: in the
 // track frame errors and innovations are along and across the base's estimated velocity, so that what was learnt on one
-// course holds on all of them.
+// course holds on all of them. To a sensor of bearings it matters how a target is seen: in the sight frame they are
+// along and across the line from the sensor to the base's estimate.
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "truebearing/core/bounded.hpp"
 #include "truebearing/core/state_space.hpp"
+#include "truebearing/measurement/measurement.hpp"
 
 namespace truebearing {
 
 enum class Frame {
   state,  ///< the state's own components
-  track   ///< plane space only: [along_m, cross_m, along_mps, cross_mps], cross to starboard
+  track,  ///< plane space only: [along_m, cross_m, along_mps, cross_mps], cross to starboard
+  sight   ///< the same along the line of sight, cross clockwise; the axes do not turn with the sight
 };
 
 /// Names of the components of a state in that frame.
 const StateSpace& space_in(Frame frame, const StateSpace& space);
 
 /// +1 where the component of a state stays as it is for a mirrored target, -1 where it changes sign. In the track frame
-/// the mirror stands along the track; in the state's own every component changes sign.
+/// the mirror stands along the track, in the sight frame along the line of sight; in the state's own every component
+/// changes sign.
 inline int component_parity(Frame frame, int component) {
-  return frame == Frame::track && component % 2 == 0 ? +1 : -1;
+  return frame != Frame::state && component % 2 == 0 ? +1 : -1;
 }
 
 /// The rotation into a frame, for one estimate.
 class FrameRotation {
  public:
   FrameRotation() = default;
-  /// x (n): the estimate whose velocity is the track. One that stands still is taken to head North.
-  FrameRotation(Frame frame, const BoundedVector& x) : rotates_(frame == Frame::track) {
+  /// x (n): the estimate whose velocity is the track, or that is seen from the sensor (from the origin where there is
+  /// none). One that stands still is taken to head North, one at the sensor to be seen there.
+  FrameRotation(Frame frame, const BoundedVector& x, const std::optional<SensorState>& sensor = {})
+      : rotates_(frame != Frame::state) {
     if (!rotates_) return;
-    const Eigen::Vector2d v = x.tail<2>();
-    const double speed = v.stableNorm();
-    along_ = speed > 0.0 ? Eigen::Vector2d(v / speed) : Eigen::Vector2d(0.0, 1.0);
+    Eigen::Vector2d direction = frame == Frame::track ? x.tail<2>() : x.head<2>();
+    if (frame == Frame::sight && sensor) direction -= sensor->position_m;
+    const double length = direction.stableNorm();
+    along_ = length > 0.0 ? Eigen::Vector2d(direction / length) : Eigen::Vector2d(0.0, 1.0);
   }
 
   /// A state, or a position (the first half of one), in the frame. The way back is the same.
@@ -81,7 +91,9 @@ class FrameRotation {
   Eigen::Vector2d along_{0.0, 1.0};
 };
 
-/// "state" or "track".
 std::string_view to_string(Frame frame);
+/// Names of all frames, as studies and model files spell them, and the frame of one of these.
+const std::vector<std::string>& frame_names();
+Frame frame_of(std::string_view name);
 
 }  // namespace truebearing

@@ -174,9 +174,9 @@ CorrectionModel model_from(const Json& json, const std::string& name) {
 
   if (file.has("frame")) {
     const std::string frame = file.text("frame");
-    if (frame != to_string(Frame::state) && frame != to_string(Frame::track))
-      throw file.error("frame", "is \"" + frame + "\"", "state, track");
-    model.frame = frame == to_string(Frame::track) ? Frame::track : Frame::state;
+    model.frame = frame_of(frame);
+    if (frame != to_string(model.frame))
+      throw file.error("frame", "is \"" + frame + "\"", suggestion(frame, frame_names()));
   }
   if (file.has("output_in")) {
     if (file.text("output_in") != kSigma)

@@ -19,7 +19,7 @@ std::string amount(double value) {
   return std::abs(value) >= 100.0 ? fmt::format("{:+.0f}", value) : fmt::format("{:+.3g}", value);
 }
 
-// Corrections in words: "+12 m, -3 m/s" on a line; in the track frame each with its direction.
+// Corrections in words: "+12 m, -3 m/s" on a line; in a turned frame each with its direction.
 std::string amounts(const CorrectionModel& model, const Eigen::VectorXd& values) {
   const StateSpace& space = space_in(model.frame, *model.space);
   std::string text;
@@ -28,7 +28,7 @@ std::string amounts(const CorrectionModel& model, const Eigen::VectorXd& values)
     text += fmt::format("{}{} ", i == 0 ? "" : ", ", amount(values[i]));
     if (model.output_in_sigma)
       text += fmt::format("sigma of {}", component);
-    else if (model.frame == Frame::track)
+    else if (model.frame != Frame::state)
       text += fmt::format("{} {}", unit_of(component), component.substr(0, component.find('_')));
     else
       text += unit_of(component);

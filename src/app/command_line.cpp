@@ -21,6 +21,7 @@ int command_line(int argc, const char* const* argv) {
   add_compare(app);
   add_check(app);
   add_rules(app);
+  add_tma(app);
   try {
     app.parse(argc, argv);
     if (std::fflush(stdout) != 0) throw InputError("standard output", "cannot be written");

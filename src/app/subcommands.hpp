@@ -13,5 +13,6 @@ void add_track(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_check(CLI::App& app);
 void add_rules(CLI::App& app);
+void add_tma(CLI::App& app);
 
 }  // namespace truebearing

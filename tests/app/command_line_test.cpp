@@ -7,6 +7,7 @@
 
 #include "tests/app/program.hpp"
 #include "tests/support/flight_study.hpp"
+#include "truebearing/measurement/recording_csv.hpp"
 #include "truebearing/tracker/step_log.hpp"
 
 namespace truebearing {
@@ -163,6 +164,31 @@ TEST(Program, TracksWhatItSimulated) {
   const Outcome scores = run(folder, "track small.toml - --json - < logs/run_0001.csv");
   EXPECT_EQ(scores.status, 0) << scores.err;
   EXPECT_TRUE(json::parse(scores.out).contains("trackers"));
+}
+
+TEST(Program, SimulatesBearingsOfARecordedTrack) {
+  const TemporaryFolder folder;
+  std::string positions = "time_s,vessel,latitude_deg,longitude_deg\n";
+  for (int k = 0; k < 30; ++k)
+    for (int vessel = 1; vessel <= 2; ++vessel)
+      positions += std::to_string(10 * k) + "," + std::to_string(vessel) + "," + std::to_string(50.0 + 5e-4 * k * vessel) + ",-1.0\n";
+  folder.write("ais.csv", positions);
+  const std::string scenario = std::string(TRUEBEARING_SOURCE_DIR) + "/data/scenarios/bearings_of_a_vessel.toml";
+  const Outcome simulated =
+      run(folder, "simulate " + scenario + " --track ais.csv --track-id 2 --track-from 50 --quiet -o logs");
+  EXPECT_EQ(simulated.status, 0) << simulated.err;
+  const Recording log = read_recording(folder.path() / "logs/run_0000.csv");
+  ASSERT_EQ(log.measurements.size(), 25u);
+  EXPECT_NEAR(log.truth[0].x[0].head<2>().norm(), 6000.0, 1e-6) << "the scenario's range";
+  EXPECT_NEAR(log.truth[0].x[5][3], 1e-4 * 111230.0, 0.01) << "the track's speed";
+
+  const Outcome unsaid = run(folder, "simulate " + scenario + " --track ais.csv -o none");
+  EXPECT_EQ(unsaid.status, 1);
+  EXPECT_THAT(unsaid.err, AllOf(HasSubstr("ais.csv"), HasSubstr("1, 2")));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "none"));
+  EXPECT_EQ(run(folder, "simulate " + scenario + " --track-id 2 -o none").status, 2);
+  write_study(folder, plain_study());
+  EXPECT_THAT(run(folder, "simulate scenario.toml --track ais.csv -o none").err, HasSubstr("bearings_only"));
 }
 
 TEST(Program, MissingCellsAreCoastedAndCounted) {

@@ -100,7 +100,7 @@ void solve(const BearingWindow& window, const Options& options, TmaAnswer& answe
   answer.estimate = answer.has_prior ? batch.solve(window, prior_of(options, window)) : batch.solve(window);
   if (!answer.estimate.found) return;
   answer.observability = batch.observability();
-  for (const Ambiguity& ambiguity : batch.ambiguities()) answer.ambiguities.push_back({ambiguity.x, ambiguity.cost});
+  answer.ambiguities = batch.ambiguities();
   if (!answer.range_is_known()) answer.hypotheses = hypotheses(window, batch_options);
 }
 

@@ -121,8 +121,8 @@ std::string open_range_lines(const TmaAnswer& answer) {
     text += "own ship has not manoeuvred in a way that shows.\n";
   else
     text += fmt::format(
-        "a target infinitely far away explains them nearly as well (likelihood ratio {:.1f}, 19.5 needed).\n",
-        std::max(geometry.against_infinity, 0.0));
+        "a target infinitely far away explains them nearly as well (likelihood ratio {:.1f}, {:.1f} needed).\n",
+        std::max(geometry.against_infinity, 0.0), Observability::kRuledOut);
   if (answer.has_prior) text += "The answer above is what was believed beforehand as much as what was measured.\n";
   text += fmt::format(
       "They fit a target at any range on that bearing; the course and speed that fit best at some of them:\n"
@@ -138,11 +138,11 @@ std::string open_range_lines(const TmaAnswer& answer) {
 std::string ambiguity_lines(const TmaAnswer& answer) {
   std::string text;
   if (!answer.range_is_known()) return text;  // every range is possible, as has been said
-  for (const TmaAnswer::Other& other : answer.ambiguities) {
+  for (const Ambiguity& other : answer.ambiguities) {
     const Motion motion(other.x, answer.own_ship);
     text +=
         fmt::format("also possible: range {:.0f} m, course {:.1f} deg, speed {:.2f} m/s (likelihood ratio {:.1f})\n",
-                    motion.range_m, motion.course_deg, motion.speed_mps, 2.0 * other.cost_above);
+                    motion.range_m, motion.course_deg, motion.speed_mps, 2.0 * other.cost);
   }
   return text;
 }
@@ -222,9 +222,9 @@ std::string tma_json(const TmaAnswer& answer) {
                     {"starts", estimate.starts},
                     {"non_finite_starts", estimate.non_finite_starts}};
   json["ambiguities"] = Json::array();
-  for (const TmaAnswer::Other& other : answer.ambiguities) {
+  for (const Ambiguity& other : answer.ambiguities) {
     Json entry = motion_json(other.x, answer.own_ship);
-    entry["likelihood_ratio"] = 2.0 * other.cost_above;
+    entry["likelihood_ratio"] = 2.0 * other.cost;
     json["ambiguities"].push_back(entry);
   }
   json["hypotheses"] = Json::array();

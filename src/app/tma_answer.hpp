@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "truebearing/tma/batch_estimate.hpp"
-#include "truebearing/tma/observability.hpp"
+#include "truebearing/tma/bearings_only_batch.hpp"
 #include "truebearing/tma/residual_checks.hpp"
 #include "truebearing/measurement/measurement.hpp"
 
@@ -25,11 +24,7 @@ struct TmaAnswer {
   std::optional<Observability> observability;  ///< of ml and map
   bool has_prior = false;
 
-  struct Other {
-    Eigen::Vector4d x;
-    double cost_above;
-  };
-  std::vector<Other> ambiguities;           ///< other minima that explain the bearings nearly as well
+  std::vector<Ambiguity> ambiguities;
   std::vector<Eigen::Vector4d> hypotheses;  ///< where the range is open: the state at each of some ranges
   std::optional<Eigen::Vector4d> truth;     ///< at the last bearing
 

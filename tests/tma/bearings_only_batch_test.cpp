@@ -132,6 +132,13 @@ TEST(BearingsOnlyBatch, ToldOfAnotherMinimumThatIsNearlyAsGood) {
   BearingsOnlyBatch batch;
   batch.solve(two_legs(kTarget, 300.0, 900.0, 1.0));
   EXPECT_TRUE(batch.ambiguities().empty());
+  const BatchEstimate best = batch.solve(two_legs(kTarget, 1e9, 900.0, 1.0));  // any range will do
+  ASSERT_FALSE(batch.ambiguities().empty());
+  for (const Ambiguity& other : batch.ambiguities()) {
+    EXPECT_GE(other.cost, 0.0);
+    EXPECT_LT(other.cost, 1.92);
+    EXPECT_GT((other.x - best.x).head<2>().norm(), 100.0);
+  }
 }
 
 TEST(BearingsOnlyBatch, TooFewBearingsAreNoEstimate) {

@@ -39,7 +39,7 @@ TEST(BearingsBatchTracker, SolvesAtItsTimesAndCoastsBetween) {
     const StepRecord& record = records.front();
     EXPECT_EQ(record.batch.has_value(), m.time_s == 480.0 || m.time_s == 1000.0);
     if (record.batch) {
-      EXPECT_EQ(record.status, m.time_s == 480.0 ? record.status : StepStatus::ok);
+      EXPECT_TRUE(record.status == StepStatus::ok || (m.time_s == 480.0 && record.status == StepStatus::unobservable));
       EXPECT_EQ(record.batch->starts, 3);
       solved = record.x;
     } else {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "truebearing/core/error.hpp"
-#include "truebearing/evaluation/posterior_information.hpp"
+#include "truebearing/measurement/posterior_information.hpp"
 #include "truebearing/measurement/bearing.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
 

@@ -6,7 +6,8 @@
 #include "truebearing/core/angle.hpp"
 #include "truebearing/core/error.hpp"
 #include "truebearing/measurement/bearing.hpp"
-#include "truebearing/measurement/fisher_information.hpp"
+#include "truebearing/measurement/posterior_information.hpp"
+#include "truebearing/motion/constant_velocity.hpp"
 
 namespace truebearing {
 namespace {
@@ -22,12 +23,6 @@ Eigen::Vector4d state_of(const SensorState& vessel) {
   Eigen::Vector4d x;
   x << vessel.position_m, vessel.velocity_mps;
   return x;
-}
-
-Eigen::Matrix4d transition(double t) {
-  Eigen::Matrix4d F = Eigen::Matrix4d::Identity();
-  F(0, 2) = F(1, 3) = t;
-  return F;
 }
 
 }  // namespace
@@ -85,31 +80,27 @@ BearingsOnlyScenario::Draw BearingsOnlyScenario::draw(RandomStream& stream) cons
 }
 
 bool BearingsOnlyScenario::accepts(const Draw& draw) const {
-  Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
+  const ConstantVelocity<2, ContinuousWhiteNoise> steady{};
+  PosteriorInformation<4> information;
   const Eigen::Vector4d x0 = state_of(draw.target.at(0.0).state);
-  double end_s = 0.0;
   Eigen::Vector2d last_m = Eigen::Vector2d::Zero();
   for (int k = 0; k < draw.steps; ++k) {
-    end_s = k * draw.period_s;
-    const auto [own_ship, turning] = draw.own_ship.at(end_s);
-    last_m = draw.target.at(end_s).state.position_m - own_ship.position_m;
+    const double time_s = k * draw.period_s;
+    const auto [own_ship, turning] = draw.own_ship.at(time_s);
+    last_m = draw.target.at(time_s).state.position_m - own_ship.position_m;
     if (last_m.norm() < parameters_.closest_m) return false;
+    if (!parameters_.range_bound_percent) continue;
+    if (k > 0) information.predict(steady.F(draw.period_s), steady.Q(draw.period_s));
     if (turning && parameters_.sensor.masked_in_turns) continue;
-    const Bearing<> model{own_ship.position_m, own_ship.velocity_mps, parameters_.sensor.sigma_rad};
-    const Eigen::Matrix4d Phi = transition(end_s);
-    information += fisher_information(model, Eigen::Vector4d(Phi * x0), Phi);
+    information.update(Bearing<>{own_ship.position_m, own_ship.velocity_mps, parameters_.sensor.sigma_rad},
+                       Eigen::Vector4d(steady.F(time_s) * x0));
   }
   if (!parameters_.range_bound_percent) return true;
-  // The range's gradient at the end, carried back to time 0 where the information is; scaled to a unit diagonal, since
-  // its components differ by the square of the time.
-  Eigen::Vector4d u = Eigen::Vector4d::Zero();
-  u.head<2>() = last_m.normalized();
-  const Eigen::Vector4d scale = information.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::Vector4d g = scale.asDiagonal() * transition(end_s).transpose() * u;
-  const Eigen::LDLT<Eigen::Matrix4d> scaled(scale.asDiagonal() * information * scale.asDiagonal());
-  constexpr double kRounding = 1e-13;  // what is left of the information where there is none
-  if (!(scaled.vectorD().minCoeff() > kRounding)) return false;
-  return 100.0 * std::sqrt(g.dot(scaled.solve(g))) < *parameters_.range_bound_percent * last_m.norm();
+  const std::optional<Eigen::Matrix4d> P = information.covariance();
+  if (!P) return false;
+  const Eigen::Vector2d u = last_m.normalized();
+  const double sigma_m = std::sqrt(u.dot(P->topLeftCorner<2, 2>() * u));
+  return 100.0 * sigma_m < *parameters_.range_bound_percent * last_m.norm();
 }
 
 Recording BearingsOnlyScenario::simulate(const RunKey& key) const {

@@ -3,6 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "truebearing/motion/constant_velocity.hpp"
+
 namespace truebearing {
 
 Eigen::Matrix4d covariance_of(const Eigen::Matrix4d& information) {
@@ -16,8 +18,7 @@ Eigen::Matrix4d covariance_of(const Eigen::Matrix4d& information) {
 }
 
 void carry(double t, Eigen::Vector4d& x, Eigen::Matrix4d& P) {
-  Eigen::Matrix4d F = Eigen::Matrix4d::Identity();
-  F(0, 2) = F(1, 3) = t;
+  const Eigen::Matrix4d F = ConstantVelocity<2, ContinuousWhiteNoise>{}.F(t);
   x = F * x;
   P = F * P * F.transpose();
   P = 0.5 * (P + P.transpose().eval());

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "truebearing/motion/constant_velocity.hpp"
 #include "truebearing/tma/cho_2015.hpp"
 
 namespace truebearing {
@@ -18,12 +19,6 @@ LevenbergMarquardtOptions<4> descent_options(int max_iterations) {
   options.least_curvature << 1e-6, 1e-2, 1e-2, 1.0;
   options.lower[3] = kLeastInverseRange;
   return options;
-}
-
-Eigen::Matrix4d carried(double t, const Eigen::Matrix4d& T) {
-  Eigen::Matrix4d F = Eigen::Matrix4d::Identity();
-  F(0, 2) = F(1, 3) = t;
-  return F * T;
 }
 
 }  // namespace
@@ -98,7 +93,7 @@ BatchEstimate BearingsOnlyBatch::solve(const BearingWindow& window, const std::o
 
   const Minimum<4>& best = *std::min_element(minima_.begin(), minima_.end(),
                                              [](const auto& a, const auto& b) { return a.at.cost < b.at.cost; });
-  const Eigen::Matrix4d T = carried(to_end_s, polar_.jacobian(best.x));
+  const Eigen::Matrix4d T = ConstantVelocity<2, ContinuousWhiteNoise>{}.F(to_end_s) * polar_.jacobian(best.x);
   const NormalEquations<4> data = polar_(best.x);
   estimate.found = true;
   estimate.time_s = window.last_time_s();

@@ -19,8 +19,10 @@ struct Observability {
   /// freedom where the bearings say nothing of the range.
   double against_infinity = 0.0;
 
-  /// Leaves out against_infinity by chance once in 1e5.
-  bool observable() const { return rank == 4 && against_infinity > 19.51; }
+  /// The quantile of that chi-square that is passed by chance once in 1e5.
+  static constexpr double kRuledOut = 19.51;
+
+  bool observable() const { return rank == 4 && against_infinity > kRuledOut; }
 };
 
 /// A: information about y = [beta, beta', r'/r, 1/r] (4 x 4) at y; `length_s` of the window; `T`: dx/dy at the time of

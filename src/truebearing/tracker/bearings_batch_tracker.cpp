@@ -1,6 +1,6 @@
 #include "truebearing/tracker/bearings_batch_tracker.hpp"
 
-#include <Eigen/LU>
+#include <Eigen/Cholesky>
 #include <utility>
 
 #include "truebearing/tma/residual_checks.hpp"
@@ -45,7 +45,7 @@ void BearingsBatchTracker::believe(const Measurement& first, double sigma_rad, c
   const GaussianState state = belief.state(first.z[0], sigma_rad, sensor, guess);
   prior_.emplace();
   prior_->velocity_mps = state.x.tail<2>();
-  prior_->velocity_information = state.P.bottomRightCorner<2, 2>().inverse();
+  prior_->velocity_information = state.P.bottomRightCorner<2, 2>().llt().solve(Eigen::Matrix2d::Identity());
   if (!of_range) return;
   const TruncatedNormal range = belief.range(guess);
   prior_->range = BatchPrior::Range{range.mean, range.sigma, sensor.position_m, first.time_s};

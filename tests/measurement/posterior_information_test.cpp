@@ -1,4 +1,4 @@
-#include "truebearing/evaluation/posterior_information.hpp"
+#include "truebearing/measurement/posterior_information.hpp"
 
 #include <gtest/gtest.h>
 

@@ -51,5 +51,28 @@ TEST(PosteriorInformation, OfALinearModelIsTheKalmanFilters) {
   EXPECT_FALSE(information.covariance()->isApprox(filter.P(), 1e-4));
 }
 
+// A bias that the second of two positions has: three unknowns, the last of which joins with its first measurement.
+TEST(PosteriorInformation, ParametersJoinAsTheyAreMet) {
+  const Motion motion{{0.0}};
+  Eigen::Matrix<double, 2, Eigen::Dynamic> biased(2, 3);
+  biased << 1.0, 0.0, 1.0, 0.0, 1.0, 0.0;
+  PosteriorInformation<Eigen::Dynamic> information(2);
+  information.add_prior(Eigen::Vector2d(100.0, 4.0).asDiagonal().toDenseMatrix());
+  const Eigen::MatrixXd before = *information.covariance();
+  information.add_parameter();
+  EXPECT_FALSE(information.covariance()) << "nothing is known of the bias";
+  information.update(kPosition, kAnywhere, biased);
+  ASSERT_TRUE(information.covariance());
+  EXPECT_TRUE(information.covariance()->topLeftCorner(2, 2).isApprox(before, 1e-12))
+      << "a position that is off by an unknown bias says nothing of the state";
+  EXPECT_NEAR((*information.covariance())(2, 2), 100.0 + 400.0, 1e-9);
+
+  Eigen::Matrix3d F = Eigen::Matrix3d::Identity();
+  F.topLeftCorner<2, 2>() = motion.F(5.0);
+  const Eigen::MatrixXd expected = F * *information.covariance() * F.transpose();
+  information.predict(F, Eigen::Matrix3d::Zero());
+  EXPECT_TRUE(information.covariance()->isApprox(expected, 1e-12));
+}
+
 }  // namespace
 }  // namespace truebearing

@@ -188,6 +188,40 @@ TEST(RecordingCsv, WrittenAnglesAreDegreesAgain) {
   EXPECT_DOUBLE_EQ(again.measurements[0].sigma(0), radians(0.7));
 }
 
+TEST(RecordingCsv, BearingsWithFrequenciesReadBack) {
+  const std::string text =
+      "time_s,bearing_deg,frequency_hz,bearing_sigma_deg,frequency_sigma_hz,sensor_east_m,sensor_north_m,"
+      "sensor_east_mps,sensor_north_mps,truth_east_m,truth_north_m,truth_east_mps,truth_north_mps,truth_frequency_hz\n"
+      "0,90,99.75,1,0.02,1,2,3,4,3000,7000,-3,0,100\n"
+      "7,90,,1,0.02,1,2,3,4,2979,7000,-3,0,100\n"
+      "14,,100.25,1,0.02,1,2,3,4,2958,7000,-3,0,130\n"
+      "21,,,1,0.02,1,2,3,4,2937,7000,-3,0,130\n";
+  const Recording log = read(text);
+  EXPECT_EQ(log.truth_space, &plane_frequency_space());
+  EXPECT_EQ(log.truth[0].x[2], (Eigen::Matrix<double, 5, 1>{2958.0, 7000.0, -3.0, 0.0, 130.0}));
+  EXPECT_EQ(log.measurements[0].z(1), 99.75);
+  EXPECT_EQ(log.measurements[0].sigma(1), 0.02);
+  EXPECT_TRUE(std::isnan(log.measurements[1].z(1)));
+  EXPECT_EQ(log.counts.missing, 1) << "either a bearing or a frequency is of use";
+  EXPECT_EQ(write_recording(log), text);
+}
+
+TEST(RecordingCsv, OtherMeasurementsAreOfUseAsAWholeOnly) {
+  EXPECT_EQ(read("time_s,east_m,north_m\n0,1,2\n1,1,\n").counts.missing, 1);
+  EXPECT_EQ(read("time_s,bearing_deg\n0,1\n1,\n").counts.missing, 1);
+}
+
+TEST(RecordingCsv, TruthHasAFrequencyWhereTheLogGivesOne) {
+  const std::string rows = "\n0,90,0,0,100\n10,90,30,40,100\n20,90,60,80,100\n";
+  const Recording log = read("time_s,bearing_deg,truth_east_m,truth_north_m,truth_frequency_hz" + rows);
+  EXPECT_EQ(log.truth_space, &plane_frequency_space());
+  EXPECT_NEAR(log.truth[0].x[1][2], 3.0, 1e-9) << "velocities are completed as without it";
+  EXPECT_NEAR(log.truth[0].x[1][3], 4.0, 1e-9);
+  EXPECT_EQ(log.truth[0].x[1][4], 100.0);
+  EXPECT_EQ(read("time_s,bearing_deg,truth_east_m,truth_north_m\n0,90,0,0\n").truth_space, &plane_space());
+  EXPECT_EQ(read("time_s,bearing_deg,truth_frequency_hz\n0,90,100\n").truth_space->size(), 1) << "no plane in that";
+}
+
 TEST(RecordingCsv, SeveralTrueTracksDoNotFitALog) {
   Recording log = read("time_s,position_m,truth_position_m\n0,1,0\n");
   log.truth.push_back(log.truth[0]);

@@ -11,4 +11,9 @@ inline constexpr int kMaxDimension = 8;
 using BoundedVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxDimension, 1>;
 using BoundedMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxDimension, kMaxDimension>;
 
+/// Of a multiple-model filter: a probability for each mode (r), and the transitions between them (r x r).
+inline constexpr int kMaxModes = 10;
+using ModeVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxModes, 1>;
+using ModeMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxModes, kMaxModes>;
+
 }  // namespace truebearing

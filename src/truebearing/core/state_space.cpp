@@ -32,14 +32,26 @@ const StateSpace& plane_space() {
   return space;
 }
 
+const StateSpace& plane_frequency_space() {
+  static const StateSpace space{"plane_frequency",
+                                {"east_m", "north_m", "east_mps", "north_mps", "frequency_hz"},
+                                {{"position_m", {0, 1}}, {"velocity_mps", {2, 3}}, {"frequency_hz", {4}}}};
+  return space;
+}
+
+bool begins_in_plane(const StateSpace& space) {
+  const std::vector<std::string>& plane = plane_space().components;
+  return space.components.size() >= plane.size() && std::equal(plane.begin(), plane.end(), space.components.begin());
+}
+
 const StateSpace* find_state_space(std::string_view name) {
-  for (const StateSpace* space : {&line_space(), &plane_space()})
+  for (const StateSpace* space : {&line_space(), &plane_space(), &plane_frequency_space()})
     if (space->name == name) return space;
   return nullptr;
 }
 
 const StateSpace& state_space_of_components(const std::vector<std::string>& components) {
-  for (const StateSpace* space : {&line_space(), &plane_space()})
+  for (const StateSpace* space : {&line_space(), &plane_space(), &plane_frequency_space()})
     if (space->components == components) return *space;
   if (components.empty() || components.size() > kMaxDimension)
     throw InputError("state", "has " + std::to_string(components.size()) + " components",

@@ -30,6 +30,10 @@ struct StateSpace {
 const StateSpace& line_space();
 /// [east_m, north_m, east_mps, north_mps]: a target in the local East-North plane.
 const StateSpace& plane_space();
+/// [east_m, north_m, east_mps, north_mps, frequency_hz]: the same, and the frequency that the target radiates.
+const StateSpace& plane_frequency_space();
+/// True where a state begins with the components of plane_space().
+bool begins_in_plane(const StateSpace& space);
 
 /// The space of that name, or nullptr. Spaces live as long as the program.
 const StateSpace* find_state_space(std::string_view name);

@@ -11,12 +11,12 @@
 
 namespace truebearing {
 
-/// What one measurement of the true state x, reached by Phi (n x n), adds.
-template <MeasurementModel Model>
-Eigen::Matrix<typename Model::Scalar, Model::kStates, Model::kStates> fisher_information(
+/// What one measurement of the true state x, reached by Phi (states of the model x n), adds to the information (n x n).
+template <MeasurementModel Model, int Parameters>
+Eigen::Matrix<typename Model::Scalar, Parameters, Parameters> fisher_information(
     const Model& model, const Eigen::Matrix<typename Model::Scalar, Model::kStates, 1>& x,
-    const Eigen::Matrix<typename Model::Scalar, Model::kStates, Model::kStates>& Phi) {
-  const Eigen::Matrix<typename Model::Scalar, Model::kMeasurements, Model::kStates> G = model.H(x) * Phi;
+    const Eigen::Matrix<typename Model::Scalar, Model::kStates, Parameters>& Phi) {
+  const Eigen::Matrix<typename Model::Scalar, Model::kMeasurements, Parameters> G = model.H(x) * Phi;
   const Eigen::Matrix<typename Model::Scalar, Model::kMeasurements, Model::kMeasurements> R = model.R();
   return G.transpose() * R.llt().solve(G);
 }

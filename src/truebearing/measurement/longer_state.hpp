@@ -30,6 +30,17 @@ requires(N > Model::kStates) struct OnLongerState {
     return jacobian;
   }
 
+  /// g(z, x) of a model that gives one (modified_gain.hpp).
+  Jacobian modified_gain(const Vector& z, const State& x) const requires
+      requires(const Model& m, const Eigen::Matrix<Scalar, Model::kStates, 1>& head) {
+    m.modified_gain(z, head);
+  }
+  {
+    Jacobian g = Jacobian::Zero();
+    g.template leftCols<Model::kStates>() = model.modified_gain(z, x.template head<Model::kStates>());
+    return g;
+  }
+
   Covariance R() const { return model.R(); }
   Vector residual(const Vector& z, const Vector& z_pred) const { return model.residual(z, z_pred); }
 };

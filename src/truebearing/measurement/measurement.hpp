@@ -34,7 +34,7 @@ struct Measurement {
   /// What a tracker that ran elsewhere made of this measurement, where a step log tells; owned by the Recording.
   const StepRecord* recorded = nullptr;
 
-  /// True where no value of z can be used.
+  /// True where z lacks a value: all of it, but for sensors that can do with a part (bearing_frequency_sensor.hpp).
   bool is_missing() const { return z.size() == 0 || !z.allFinite(); }
 };
 

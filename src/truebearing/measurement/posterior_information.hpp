@@ -3,6 +3,7 @@
 //     J' = (F J^-1 F' + Q)^-1 = (I + M Q)^-1 M,  M = F^-T J F^-1,        J <- J + H' R^-1 H
 // which is the recursion of Tichavsky, Muravchik and Nehorai 1998, equation (21), written so that neither J nor Q need
 // have an inverse: without a prior J begins at zero, and without process noise it is the information of Cramer and Rao.
+// With States Eigen::Dynamic, parameters that measurements turn out to depend on can join the state as they are met.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -21,21 +22,37 @@ class PosteriorInformation {
   using Matrix = Eigen::Matrix<double, States, States>;
   using State = Eigen::Matrix<double, States, 1>;
 
+  PosteriorInformation() requires(States != Eigen::Dynamic) : J_(Matrix::Zero()) {}
+  explicit PosteriorInformation(Eigen::Index states) requires(States == Eigen::Dynamic)
+      : J_(Matrix::Zero(states, states)) {}
+
   /// Adds what is believed beforehand: a Gaussian of covariance P, positive definite.
-  void add_prior(const Matrix& P) { J_ += P.llt().solve(Matrix::Identity()); }
+  void add_prior(const Matrix& P) { J_ += P.llt().solve(identity()); }
+
+  /// Adds a last component to the state, of which nothing is known yet.
+  void add_parameter() requires(States == Eigen::Dynamic) {
+    const Eigen::Index n = J_.rows();
+    J_.conservativeResizeLike(Matrix::Zero(n + 1, n + 1));
+  }
 
   void predict(const Matrix& F, const Matrix& Q) {
     const Eigen::PartialPivLU<Matrix> transposed(F.transpose());
     const Matrix half = transposed.solve(J_);                         // F^-T J
     const Matrix M = transposed.solve(half.transpose()).transpose();  // (F^-T J) F^-1
-    J_ = Eigen::PartialPivLU<Matrix>(Matrix::Identity() + M * Q).solve(M);
+    J_ = Eigen::PartialPivLU<Matrix>(identity() + M * Q).solve(M);
     J_ = (0.5 * (J_ + J_.transpose())).eval();
   }
 
   /// One measurement of the true state x.
   template <MeasurementModel Model>
   void update(const Model& model, const State& x) {
-    J_ += fisher_information(model, x, Matrix::Identity().eval());
+    J_ += fisher_information(model, x, identity().eval());
+  }
+  /// One of a true state x that depends on the one carried along by Phi (states of the model x n).
+  template <MeasurementModel Model>
+  void update(const Model& model, const Eigen::Matrix<double, Model::kStates, 1>& x,
+              const Eigen::Matrix<double, Model::kStates, States>& Phi) {
+    J_ += fisher_information(model, x, Phi);
   }
 
   const Matrix& J() const { return J_; }
@@ -48,13 +65,15 @@ class PosteriorInformation {
     const State scale = J_.diagonal().array().rsqrt();
     const Matrix scaled = scale.asDiagonal() * J_ * scale.asDiagonal();
     const Eigen::SelfAdjointEigenSolver<Matrix> modes(scaled);
-    if (modes.eigenvalues()(0) < kRounding * modes.eigenvalues()(States - 1)) return std::nullopt;
-    const Matrix P = scaled.llt().solve(Matrix::Identity());
+    if (modes.eigenvalues()(0) < kRounding * modes.eigenvalues()(J_.rows() - 1)) return std::nullopt;
+    const Matrix P = scaled.llt().solve(identity());
     return Matrix(scale.asDiagonal() * P * scale.asDiagonal());
   }
 
  private:
-  Matrix J_ = Matrix::Zero();
+  auto identity() const { return Matrix::Identity(J_.rows(), J_.rows()); }
+
+  Matrix J_;
 };
 
 }  // namespace truebearing

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,10 @@ struct StepLog;
 struct Truth {
   int track = 0;
   std::vector<BoundedVector> x;
-  std::vector<int> phase;  ///< what the target was doing, by place in Recording::phases; empty where that is not told
+  std::vector<int> phase;  ///< what the target was doing, by place in Recording::phases, -1 for what is none of them;
+                           ///< empty where that is not told
+  /// When it first leaves its course; infinite where it keeps it to the end, nothing where that is not told.
+  std::optional<double> turns_at_s = std::nullopt;
 };
 
 struct Recording {
@@ -37,5 +41,16 @@ struct Recording {
 
   std::shared_ptr<const StepLog> steps;  ///< owns what `recorded` of the measurements points to; mostly empty
 };
+
+/// Whether z holds a bearing and the frequency heard with it, either of which may come alone.
+inline bool measures_bearing_and_frequency(const std::vector<std::string>& measured) {
+  return measured.size() == 2 && measured[0] == "bearing_deg" && measured[1] == "frequency_hz";
+}
+
+/// Whether there is nothing in a measurement of the recording that a tracker could use.
+inline bool is_unusable(const Recording& recording, const Measurement& measurement) {
+  if (!measures_bearing_and_frequency(recording.measured)) return measurement.is_missing();
+  return measurement.z.size() == 0 || measurement.z.array().isNaN().all();
+}
 
 }  // namespace truebearing

@@ -101,9 +101,12 @@ void find_truth(const CsvReader& csv, const std::vector<std::size_t>& columns, L
   if (columns.empty()) return;
   std::vector<std::string> given;
   for (const std::size_t index : columns) given.push_back(csv.header()[index].substr(kTruthPrefix.size()));
-  for (const StateSpace* space : {&line_space(), &plane_space()}) {
+  // The smallest that has them all; a frequency alone says nothing of the plane.
+  const std::vector<std::string> kFrequencyAlone{"frequency_hz"};
+  for (const StateSpace* space : {&line_space(), &plane_space(), &plane_frequency_space()}) {
     const auto known = [&](const std::string& component) { return space->component_index(component) >= 0; };
-    if (std::all_of(given.begin(), given.end(), known)) layout.truth_space = space;
+    if (!layout.truth_space && given != kFrequencyAlone && std::all_of(given.begin(), given.end(), known))
+      layout.truth_space = space;
   }
   if (!layout.truth_space) layout.truth_space = &state_space_of_components(given);
   for (const std::string& component : layout.truth_space->components) {
@@ -237,7 +240,7 @@ Recording read_rows(CsvReader csv) {
       continue;
     }
     recording.measurements.push_back(read_measurement(csv, layout, row));
-    recording.counts.missing += recording.measurements.back().is_missing();
+    recording.counts.missing += is_unusable(recording, recording.measurements.back());
     if (layout.truth_space) recording.truth[0].x.push_back(read_truth(layout, row));
     previous = std::move(row);
   }

@@ -32,7 +32,7 @@ std::unique_ptr<Scenario> scenario_of(const Options& options) {
   const auto* bearings = dynamic_cast<const BearingsOnlyScenario*>(scenario.get());
   if (!bearings)
     throw InputError(options.scenario, "has no target that --track could stand for",
-                     "a scenario of kind \"bearings_only\"");
+                     "a scenario of kind \"bearings_only\" or \"passive_sonar\"");
   return std::make_unique<BearingsOfTrack>(read_target_track(options.track, options.track_id), options.track_from_s,
                                            bearings->parameters());
 }
@@ -60,9 +60,9 @@ void add_simulate(CLI::App& app) {
   command->add_option("-o,--output", options->folder, "folder for run_0000.csv, run_0001.csv, ...")->required();
   command->add_option("--seed", options->seed, "seed of the random streams")->capture_default_str();
   command->add_option("--runs", options->runs, "number of logs")->capture_default_str()->check(CLI::Range(1, 1000000));
-  CLI::Option* track =
-      command->add_option("--track", options->track,
-                          "a recorded track (positions, or a log with truth) as the target of a bearings_only one");
+  CLI::Option* track = command->add_option(
+      "--track", options->track,
+      "a recorded track (positions, or a log with truth) as the target of a bearings_only or passive_sonar one");
   command->add_option("--track-id", options->track_id, "which one of the file")->needs(track);
   command->add_option("--track-from", options->track_from_s, "time in the track, in s, at which it begins")
       ->needs(track);

@@ -13,8 +13,8 @@
 namespace truebearing {
 namespace {
 
-using testing::error_message;
 using ::testing::AllOf;
+using testing::error_message;
 using ::testing::HasSubstr;
 
 BearingsOnlyParameters parameters() {
@@ -29,7 +29,7 @@ BearingsOnlyParameters parameters() {
 
 // A target that sails North at 3 m/s, seen at irregular times that begin at 1000 s; its first state is unknown.
 Recording track() {
-  Recording made = empty_bearings();
+  Recording made = empty_bearings({});
   double time_s = 1000.0;
   for (int k = 0; k < 60; ++k, time_s += 5.0 + k % 3) {
     made.measurements.emplace_back().time_s = time_s;
@@ -66,6 +66,29 @@ TEST(BearingsOfTrack, TargetSailsTheTrackFromTheScenariosPlace) {
   EXPECT_EQ(recording.counts.missing, 1);
 }
 
+TEST(BearingsOfTrack, ASourceIsHeardToo) {
+  BearingsOnlyParameters with_source = parameters();
+  with_source.sensor.frequency_sigma_hz = 1e-9;
+  with_source.source = SourceParameters{.frequency_hz = 100.0, .changes = {}};
+  with_source.source->changes.push_back({.time_s = 150.0, .hz = 0.5});
+  const BearingsOfTrack scenario(track(), 0.0, with_source);
+  EXPECT_EQ(scenario.truth_space(), plane_frequency_space());
+  const Recording recording = scenario.simulate({});
+  EXPECT_EQ(recording.measured.back(), "frequency_hz");
+  EXPECT_EQ(recording.counts.missing, 1);
+  for (std::size_t k = 0; k < recording.measurements.size(); ++k) {
+    const Measurement& measurement = recording.measurements[k];
+    const BoundedVector& x = recording.truth[0].x[k];
+    ASSERT_EQ(x.size(), 5);
+    EXPECT_EQ(x[4], measurement.time_s < 150.0 ? 100.0 : 100.5);
+    EXPECT_EQ(std::isnan(measurement.z[1]), k == 19);
+    if (k == 19) continue;
+    const Eigen::Vector2d u = (x.head<2>() - measurement.sensor->position_m).normalized();
+    const double v_r = u.dot(x.segment<2>(2) - measurement.sensor->velocity_mps);
+    EXPECT_NEAR(measurement.z[1], x[4] * (1.0 - v_r / 1500.0), 1e-7);
+  }
+}
+
 TEST(BearingsOfTrack, BeginsWhereItIsToldTo) {
   const Recording recording = BearingsOfTrack(track(), 1100.0, parameters()).simulate({});
   EXPECT_EQ(recording.measurements.front().time_s, 0.0);
@@ -97,13 +120,15 @@ TEST(ReadTargetTrack, ChoosesAmongVesselsByTheirNumber) {
   const double step_m = 111230.0 * 1e-3 / 12.0;
   const Recording chosen = read_target_track(path, 12);
   EXPECT_NEAR(chosen.truth[0].x[1][1] - chosen.truth[0].x[0][1], step_m, 0.01 * step_m);
-  EXPECT_THAT(error_message([&] { read_target_track(path, std::nullopt); }), AllOf(HasSubstr("2 tracks"), HasSubstr("7, 12")));
+  EXPECT_THAT(error_message([&] { read_target_track(path, std::nullopt); }),
+              AllOf(HasSubstr("2 tracks"), HasSubstr("7, 12")));
   EXPECT_THAT(error_message([&] { read_target_track(path, 8); }), AllOf(HasSubstr("no track 8"), HasSubstr("7, 12")));
 }
 
 TEST(ReadTargetTrack, TakesALogWithItsTruth) {
   const testing::TemporaryFolder folder;
-  std::ofstream(folder.path() / "log.csv") << "time_s,bearing_deg,truth_east_m,truth_north_m\n0,1,10,20\n1,2,12,21\n2,3,14,22\n";
+  std::ofstream(folder.path() / "log.csv")
+      << "time_s,bearing_deg,truth_east_m,truth_north_m\n0,1,10,20\n1,2,12,21\n2,3,14,22\n";
   const Recording read = read_target_track(folder.path() / "log.csv", std::nullopt);
   EXPECT_NEAR(read.truth[0].x[1][2], 2.0, 1e-9);
   EXPECT_THAT(error_message([&] { read_target_track(folder.path() / "log.csv", 3); }), HasSubstr("one track"));

@@ -63,6 +63,20 @@ TEST(VesselPath, ATurnThatComesTooEarlyWaitsForTheOneBefore) {
   EXPECT_NEAR(path.at(280.0).state.velocity_mps.y(), 5.0, 1e-9);
 }
 
+TEST(VesselPath, TellsWhenItTurns) {
+  const VesselPath path({0.0, 0.0}, 5.0, 0.0,
+                        {{100.0, radians(90.0), radians(1.0)}, {120.0, radians(-45.0), radians(1.0)}});
+  ASSERT_EQ(path.turns().size(), 2u);
+  EXPECT_EQ(path.turns()[0].begin_s, 100.0);
+  EXPECT_NEAR(path.turns()[0].end_s, 190.0, 1e-9);
+  EXPECT_EQ(path.turns()[0].change_rad, radians(90.0));
+  EXPECT_NEAR(path.turns()[1].begin_s, 190.0, 1e-9) << "it waited";
+  EXPECT_NEAR(path.turns()[1].end_s, 235.0, 1e-9);
+  EXPECT_EQ(path.first_turn(101.0)->begin_s, 100.0);
+  EXPECT_FALSE(path.first_turn(100.0));
+  EXPECT_FALSE(VesselPath({0.0, 0.0}, 5.0, 0.0, {}).first_turn(1e9));
+}
+
 TEST(Vessel, TurnsToACourseTheShortWay) {
   const VesselPath path =
       sail("speed_mps = 6\ncourse_deg = 110\nturns = [{ time_s = 220, to_deg = 350, rate_degps = 3 }]\n");

@@ -14,11 +14,11 @@ namespace truebearing {
 
 BearingsOfTrack::BearingsOfTrack(Recording track, double from_s, BearingsOnlyParameters parameters)
     : track_(std::move(track)), parameters_(std::move(parameters)) {
-  if (track_.truth_space != &plane_space() || track_.truth.size() != 1)
+  if (!track_.truth_space || !begins_in_plane(*track_.truth_space) || track_.truth.size() != 1)
     throw InputError("track", "has no truth of one target in the plane",
                      "time_s, latitude_deg, longitude_deg, or a log with truth_east_m, truth_north_m");
   const auto is_begin = [&](std::size_t k) {
-    return track_.measurements[k].time_s >= from_s && track_.truth.front().x[k].allFinite();
+    return track_.measurements[k].time_s >= from_s && track_.truth.front().x[k].head<4>().allFinite();
   };
   while (begin_ < track_.measurements.size() && !is_begin(begin_)) ++begin_;
   if (begin_ == track_.measurements.size())
@@ -30,16 +30,22 @@ Recording BearingsOfTrack::simulate(const RunKey& key) const {
   RandomStream noise(key, StreamId::measurement);
   const VesselPath own_ship = parameters_.own_ship.draw(Eigen::Vector2d::Zero(), scenario);
   const double range_m = parameters_.range_m.draw(scenario), bearing = radians(parameters_.bearing_deg.draw(scenario));
+  std::optional<SourceTone> tone;
+  if (parameters_.source) tone = parameters_.source->draw(scenario);
   const std::vector<BoundedVector>& truth = track_.truth.front().x;
   const Eigen::Vector2d shift_m =
       range_m * Eigen::Vector2d(std::sin(bearing), std::cos(bearing)) - truth[begin_].head<2>();
 
-  Recording recording = empty_bearings();
+  Recording recording = empty_bearings(parameters_);
   for (std::size_t k = begin_; k < truth.size(); ++k) {
     const double time_s = track_.measurements[k].time_s - track_.measurements[begin_].time_s;
     if (time_s > parameters_.duration_s) break;
-    Eigen::Vector4d target = truth[k];
+    BoundedVector target = truth[k].head<4>();
     target.head<2>() += shift_m;
+    if (tone) {
+      target.conservativeResize(5);
+      target[4] = tone->at(time_s);
+    }
     add_bearing(parameters_, time_s, own_ship.at(time_s), target, scenario, noise, recording);
   }
   return recording;

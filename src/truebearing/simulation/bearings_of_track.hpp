@@ -1,6 +1,7 @@
 // A scenario of bearings whose target sails a recorded track instead of a simulated path: the truth is the track's own,
-// at its own times, moved so that it begins at the scenario's range and bearing from own ship. Own ship, sensor and
-// guess are the scenario's; its period, its target's course and speed, and what it accepts are not asked.
+// at its own times, moved so that it begins at the scenario's range and bearing from own ship. Own ship, sensor, source
+// and guess are the scenario's; its period, its target's course and speed, its phases and what it accepts are not
+// asked.
 #pragma once
 
 #include <filesystem>
@@ -17,7 +18,7 @@ class BearingsOfTrack final : public Scenario {
   BearingsOfTrack(Recording track, double from_s, BearingsOnlyParameters parameters);
 
   Recording simulate(const RunKey& key) const override;
-  const StateSpace& truth_space() const override { return plane_space(); }
+  const StateSpace& truth_space() const override { return parameters_.truth_space(); }
 
  private:
   Recording track_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "truebearing/core/angle.hpp"
 #include "truebearing/core/error.hpp"
@@ -25,18 +26,35 @@ Eigen::Vector4d state_of(const SensorState& vessel) {
   return x;
 }
 
+// [east, north, v_east, v_north, f0]; f0 is 0 where there is no source.
+using SourceState = Eigen::Matrix<double, 5, 1>;
+
+SourceState source_state(const SensorState& vessel, const std::optional<SourceTone>& tone, double time_s) {
+  SourceState x;
+  x << state_of(vessel), tone ? tone->at(time_s) : 0.0;
+  return x;
+}
+
+BearingFrequency<> model_of(const BearingsOnlyParameters& parameters, const SensorState& own_ship) {
+  const BearingsOnlyParameters::Sensor& sensor = parameters.sensor;
+  return {own_ship.position_m,          own_ship.velocity_mps, sensor.sigma_rad,
+          sensor.frequency_sigma_hz,    sensor.sound_mps,      true,
+          parameters.source.has_value()};
+}
+
 }  // namespace
 
-Recording empty_bearings() {
+Recording empty_bearings(const BearingsOnlyParameters& parameters) {
   Recording recording;
   recording.measured = {"bearing_deg"};
-  recording.truth_space = &plane_space();
+  if (parameters.source) recording.measured.push_back("frequency_hz");
+  recording.truth_space = &parameters.truth_space();
   recording.truth.resize(1);
   return recording;
 }
 
 void add_bearing(const BearingsOnlyParameters& parameters, double time_s, const VesselPath::State& own_ship,
-                 const Eigen::Vector4d& target, RandomStream& scenario, RandomStream& noise, Recording& recording) {
+                 const BoundedVector& target, RandomStream& scenario, RandomStream& noise, Recording& recording) {
   const BearingsOnlyParameters::Sensor& sensor = parameters.sensor;
   const Eigen::Vector2d offset_m = target.head<2>() - own_ship.state.position_m;
   Measurement taken;
@@ -49,19 +67,28 @@ void add_bearing(const BearingsOnlyParameters& parameters, double time_s, const 
   const double bearing = std::atan2(offset_m.x(), offset_m.y()) + (outlier ? sensor.outlier_factor : 1.0) * error;
   const bool missing = dropped || (own_ship.turning && sensor.masked_in_turns) || !offset_m.allFinite();
   taken.z = BoundedVector::Constant(1, missing ? std::nan("") : wrap_pi(bearing));
-  recording.counts.missing += missing;
+  if (parameters.source) {
+    const double heard_hz =
+        model_of(parameters, own_ship.state).h(target.head<5>())(1) + sensor.frequency_sigma_hz * noise.normal();
+    const bool unheard = noise.uniform() < sensor.frequency_dropout_share;
+    taken.z.conservativeResize(2);
+    taken.z[1] = missing || unheard ? std::nan("") : heard_hz;
+    if (sensor.reported) taken.sigma = Eigen::Vector2d(sensor.sigma_rad, sensor.frequency_sigma_hz);
+  }
+  recording.counts.missing += is_unusable(recording, taken);
   if (recording.measurements.empty() && parameters.guess) {
     const BearingsOnlyParameters::Guess& guess = *parameters.guess;
     TargetGuess& drawn = taken.guess.emplace();
     drawn.range_m = drawn_guess(offset_m.norm(), guess.range_sigma_m, guess.least_range_m, scenario);
     drawn.range_sigma_m = guess.range_sigma_m;
     if (guess.speed_sigma_mps > 0.0) {
-      drawn.speed_mps = drawn_guess(target.tail<2>().norm(), guess.speed_sigma_mps, guess.least_speed_mps, scenario);
+      drawn.speed_mps =
+          drawn_guess(target.segment<2>(2).norm(), guess.speed_sigma_mps, guess.least_speed_mps, scenario);
       drawn.speed_sigma_mps = guess.speed_sigma_mps;
     }
   }
   recording.measurements.push_back(std::move(taken));
-  recording.truth[0].x.emplace_back(target);
+  recording.truth[0].x.push_back(target);
 }
 
 struct BearingsOnlyScenario::Draw {
@@ -69,6 +96,7 @@ struct BearingsOnlyScenario::Draw {
   int steps;
   VesselPath own_ship;
   VesselPath target;
+  std::optional<SourceTone> tone;
 };
 
 BearingsOnlyScenario::Draw BearingsOnlyScenario::draw(RandomStream& stream) const {
@@ -76,7 +104,9 @@ BearingsOnlyScenario::Draw BearingsOnlyScenario::draw(RandomStream& stream) cons
   const VesselPath own_ship = parameters_.own_ship.draw(Eigen::Vector2d::Zero(), stream);
   const double range_m = parameters_.range_m.draw(stream), bearing = radians(parameters_.bearing_deg.draw(stream));
   const VesselPath target = parameters_.target.draw({range_m * std::sin(bearing), range_m * std::cos(bearing)}, stream);
-  return {period_s, static_cast<int>(std::floor(parameters_.duration_s / period_s + 1e-9)) + 1, own_ship, target};
+  std::optional<SourceTone> tone;
+  if (parameters_.source) tone = parameters_.source->draw(stream);
+  return {period_s, static_cast<int>(std::floor(parameters_.duration_s / period_s + 1e-9)) + 1, own_ship, target, tone};
 }
 
 bool BearingsOnlyScenario::accepts(const Draw& draw) const {
@@ -95,12 +125,35 @@ bool BearingsOnlyScenario::accepts(const Draw& draw) const {
     information.update(Bearing<>{own_ship.position_m, own_ship.velocity_mps, parameters_.sensor.sigma_rad},
                        Eigen::Vector4d(steady.F(time_s) * x0));
   }
+  if (!determines_position(draw)) return false;
   if (!parameters_.range_bound_percent) return true;
   const std::optional<Eigen::Matrix4d> P = information.covariance();
   if (!P) return false;
   const Eigen::Vector2d u = last_m.normalized();
   const double sigma_m = std::sqrt(u.dot(P->topLeftCorner<2, 2>() * u));
   return 100.0 * sigma_m < *parameters_.range_bound_percent * last_m.norm();
+}
+
+bool BearingsOnlyScenario::determines_position(const Draw& draw) const {
+  if (!parameters_.position_bound) return true;
+  const auto [most_m, at_s] = *parameters_.position_bound;
+  const SourceState x0 = source_state(draw.target.at(0.0).state, draw.tone, 0.0);
+  const ConstantVelocity<2, ContinuousWhiteNoise> steady{};
+  // About the state at at_s, without the frequency where there is none.
+  PosteriorInformation<Eigen::Dynamic> information(parameters_.source ? 5 : 4);
+  for (int k = 0; k < draw.steps && k * draw.period_s <= at_s; ++k) {
+    const double time_s = k * draw.period_s;
+    const auto [own_ship, turning] = draw.own_ship.at(time_s);
+    if (turning && parameters_.sensor.masked_in_turns) continue;
+    SourceState x = x0;
+    x.head<4>() = steady.F(time_s) * x0.head<4>();
+    Eigen::Matrix<double, 5, Eigen::Dynamic> Phi =
+        Eigen::Matrix<double, 5, 5>::Identity().leftCols(information.J().cols());
+    Phi.topLeftCorner<4, 4>() = steady.F(time_s - at_s);
+    information.update(model_of(parameters_, own_ship), x, Phi);
+  }
+  const std::optional<Eigen::MatrixXd> P = information.covariance();
+  return P && std::sqrt(P->topLeftCorner<2, 2>().trace()) < most_m;
 }
 
 Recording BearingsOnlyScenario::simulate(const RunKey& key) const {
@@ -114,16 +167,23 @@ Recording BearingsOnlyScenario::simulate(const RunKey& key) const {
     run = draw(scenario);
   }
 
-  Recording recording = empty_bearings();
+  Recording recording = empty_bearings(parameters_);
+  const std::optional<VesselPath::Turn> turn = run.target.first_turn((run.steps - 1) * run.period_s);
+  recording.truth[0].turns_at_s = turn ? turn->begin_s : std::numeric_limits<double>::infinity();
+  if (parameters_.phases) recording.phases = parameters_.phases->names();
   for (int k = 0; k < run.steps; ++k) {
     const double time_s = k * run.period_s;
-    add_bearing(parameters_, time_s, run.own_ship.at(time_s), state_of(run.target.at(time_s).state), scenario, noise,
+    const SourceState target = source_state(run.target.at(time_s).state, run.tone, time_s);
+    add_bearing(parameters_, time_s, run.own_ship.at(time_s), target.head(truth_space().size()), scenario, noise,
                 recording);
+    if (parameters_.phases) recording.truth[0].phase.push_back(parameters_.phases->at(time_s, turn));
   }
   return recording;
 }
 
-std::unique_ptr<Scenario> read_bearings_only_scenario(TableReader& table) {
+namespace {
+
+std::unique_ptr<Scenario> read(TableReader& table, bool with_source) {
   constexpr Range kShare{0.0, 1.0};
   BearingsOnlyParameters parameters;
   parameters.period_s = read_distribution(table, "period_s", {1e-3, 3600.0});
@@ -144,6 +204,14 @@ std::unique_ptr<Scenario> read_bearings_only_scenario(TableReader& table) {
   parameters.sensor.outlier_factor = sensor.number_or("outlier_factor", 1.0, kPositive);
   parameters.sensor.masked_in_turns = sensor.boolean_or("masked_in_turns", false);
   parameters.sensor.reported = sensor.boolean_or("reported", true);
+  if (with_source) {
+    parameters.sensor.frequency_sigma_hz = sensor.number("frequency_sigma_hz", kPositive);
+    parameters.sensor.frequency_dropout_share = sensor.number_or("frequency_dropout_share", 0.0, kShare);
+    parameters.sensor.sound_mps = sensor.number_or("sound_mps", kSoundInWater_mps, kPositive);
+    TableReader source = table.table("source");
+    parameters.source = read_source(source);
+    source.finish();
+  }
   sensor.finish();
 
   if (auto guess = table.table_if_present("guess")) {
@@ -159,9 +227,26 @@ std::unique_ptr<Scenario> read_bearings_only_scenario(TableReader& table) {
     parameters.closest_m = accept->number_or("closest_m", 0.0, kNonNegative);
     if (accept->has("range_bound_percent"))
       parameters.range_bound_percent = accept->number("range_bound_percent", kPositive);
+    if (accept->has("position_bound_m") || accept->has("position_bound_at_s"))
+      parameters.position_bound = {accept->number("position_bound_m", kPositive),
+                                   accept->number("position_bound_at_s", {0.0, parameters.duration_s})};
     accept->finish();
   }
+  if (auto phases = table.table_if_present("phases")) {
+    parameters.phases = read_turn_phases(*phases);
+    phases->finish();
+  }
   return std::make_unique<BearingsOnlyScenario>(std::move(parameters));
+}
+
+}  // namespace
+
+std::unique_ptr<Scenario> read_bearings_only_scenario(TableReader& table) {
+  return read(table, false);
+}
+
+std::unique_ptr<Scenario> read_passive_sonar_scenario(TableReader& table) {
+  return read(table, true);
 }
 
 }  // namespace truebearing

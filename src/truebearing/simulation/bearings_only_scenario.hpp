@@ -1,16 +1,22 @@
 // Bearings of a target from an own ship that manoeuvres: target-motion analysis. Vessels sail at constant speed with
 // turns (vessel.hpp); the target begins at a range and bearing from own ship, which begins at the origin. Noise is
-// Gaussian, with dropouts and outliers where asked for; while own ship turns, bearings may be missing.
+// Gaussian, with dropouts and outliers where asked for; while own ship turns, measurements may be missing.
 //
-// A family may accept some of its draws only: those whose target never comes too close, and those whose range the
-// bearings determine by the end (its Cramer-Rao bound, as if the target kept its first velocity).
+// In passive sonar the target is a source (source.hpp) besides, whose frequency is heard with its Doppler shift
+// (bearing_frequency.hpp): z = [bearing, frequency], and the truth ends in the frequency that the source radiates.
+//
+// A family may accept some of its draws only: those whose target never comes too close, and those whose range or
+// position the measurements determine in time (its Cramer-Rao bound, as if the target kept its first velocity).
 #pragma once
 
 #include <memory>
 #include <optional>
 #include <utility>
 
+#include "truebearing/measurement/bearing_frequency.hpp"
 #include "truebearing/simulation/scenario.hpp"
+#include "truebearing/simulation/source.hpp"
+#include "truebearing/simulation/turn_phases.hpp"
 #include "truebearing/simulation/vessel.hpp"
 
 namespace truebearing {
@@ -25,12 +31,18 @@ struct BearingsOnlyParameters {
 
   struct Sensor {
     double sigma_rad = 0.0;
-    double dropout_share = 0.0;    ///< probability that a bearing is missing
+    double dropout_share = 0.0;    ///< probability that a measurement is missing
     double outlier_share = 0.0;    ///< probability that a bearing's noise is
     double outlier_factor = 1.0;   ///< that many times as large
-    bool masked_in_turns = false;  ///< is a bearing missing while own ship turns?
-    bool reported = true;          ///< does a measurement carry its standard deviation?
+    bool masked_in_turns = false;  ///< is a measurement missing while own ship turns?
+    bool reported = true;          ///< does a measurement carry its standard deviations?
+    double frequency_sigma_hz = 0.0;
+    double frequency_dropout_share = 0.0;  ///< probability that the frequency alone is missing
+    double sound_mps = kSoundInWater_mps;  ///< speed of sound
   } sensor;
+
+  std::optional<SourceParameters> source;  ///< whose frequency is measured; none: bearings only
+  std::optional<TurnPhases> phases;        ///< of the target, that the recording tells apart
 
   /// The first measurement carries a guess of range, and of speed, that is as wrong as this; drawn again where it is
   /// less than the least.
@@ -43,33 +55,45 @@ struct BearingsOnlyParameters {
   std::optional<Guess> guess;
 
   double closest_m = 0.0;                     ///< of accepted draws
-  std::optional<double> range_bound_percent;  ///< of accepted draws: the bound at the end, of the range then
+  std::optional<double> range_bound_percent;  ///< of accepted draws: bearings' bound at the end, of the range then
+  /// Of accepted draws: the root mean square of the position's error that the bound allows at a time, from all that is
+  /// measured until then of a source that keeps its first frequency.
+  struct PositionBound {
+    double most_m = 0.0;
+    double at_s = 0.0;
+  };
+  std::optional<PositionBound> position_bound;
+
+  const StateSpace& truth_space() const { return source ? plane_frequency_space() : plane_space(); }
 };
 
-/// A recording of bearings with plane truth and no step yet.
-Recording empty_bearings();
-/// Adds one to it: the bearing of a target in state [east, north, v_east, v_north] from own ship, with the sensor's
-/// noise from `noise` and, to the first, the guess from `scenario`. The bearing of a target at an unknown place is
-/// missing.
+/// A recording of what the sensor measures, with its truth and no step yet.
+Recording empty_bearings(const BearingsOnlyParameters& parameters);
+/// Adds one to it: the bearing, and the frequency of a source, of a target in state [east, north, v_east, v_north] (and
+/// frequency) from own ship, with the sensor's noise from `noise` and, to the first, the guess from `scenario`. What an
+/// unknown component of the state leaves unknown is missing.
 void add_bearing(const BearingsOnlyParameters& parameters, double time_s, const VesselPath::State& own_ship,
-                 const Eigen::Vector4d& target, RandomStream& scenario, RandomStream& noise, Recording& recording);
+                 const BoundedVector& target, RandomStream& scenario, RandomStream& noise, Recording& recording);
 
 class BearingsOnlyScenario final : public Scenario {
  public:
   explicit BearingsOnlyScenario(BearingsOnlyParameters parameters) : parameters_(std::move(parameters)) {}
   /// Throws InputError where a thousand draws were not accepted.
   Recording simulate(const RunKey& key) const override;
-  const StateSpace& truth_space() const override { return plane_space(); }
+  const StateSpace& truth_space() const override { return parameters_.truth_space(); }
   const BearingsOnlyParameters& parameters() const { return parameters_; }
 
  private:
   struct Draw;
   Draw draw(RandomStream& stream) const;
   bool accepts(const Draw& draw) const;
+  bool determines_position(const Draw& draw) const;
 
   BearingsOnlyParameters parameters_;
 };
 
 std::unique_ptr<Scenario> read_bearings_only_scenario(TableReader& table);
+/// The same with a table [source].
+std::unique_ptr<Scenario> read_passive_sonar_scenario(TableReader& table);
 
 }  // namespace truebearing

@@ -17,10 +17,10 @@ struct ScenarioKind {
   const char* name;
   std::unique_ptr<Scenario> (*read)(TableReader&);
 };
-constexpr std::array kKinds{ScenarioKind{"line", read_line_scenario},
-                            ScenarioKind{"planar_flight", read_planar_flight_scenario},
-                            ScenarioKind{"planar_legs", read_planar_legs_scenario},
-                            ScenarioKind{"bearings_only", read_bearings_only_scenario}};
+constexpr std::array kKinds{
+    ScenarioKind{"line", read_line_scenario}, ScenarioKind{"planar_flight", read_planar_flight_scenario},
+    ScenarioKind{"planar_legs", read_planar_legs_scenario}, ScenarioKind{"bearings_only", read_bearings_only_scenario},
+    ScenarioKind{"passive_sonar", read_passive_sonar_scenario}};
 
 }  // namespace
 

@@ -31,8 +31,8 @@ class Scenario {
   Scenario& operator=(const Scenario&) = default;
 };
 
-/// Reads a scenario table; its key `kind` names which: "line", "planar_flight", "planar_legs" or
-/// "bearings_only". Throws InputError.
+/// Reads a scenario table; its key `kind` names which: "line", "planar_flight", "planar_legs",
+/// "bearings_only" or "passive_sonar". Throws InputError.
 /// `more` holds the kinds that a room further on adds, by name.
 using ScenarioReader = std::function<std::unique_ptr<Scenario>(TableReader&)>;
 using ScenarioKinds = std::map<std::string, ScenarioReader>;

@@ -44,6 +44,7 @@ VesselPath::VesselPath(const Eigen::Vector2d& start_m, double speed_mps, double 
     const double time_s = std::max(change.time_s, last_s);
     if (duration_s > 0.0) begin(time_s, course, std::copysign(change.rate_radps, change.change_rad));
     begin(time_s + duration_s, course + change.change_rad, 0.0);
+    turns_.push_back({time_s, time_s + duration_s, change.change_rad});
   }
   legs_.front().begin_s = 0.0;
 }

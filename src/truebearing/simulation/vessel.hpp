@@ -2,6 +2,7 @@
 // alike. Courses clockwise from North.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "truebearing/core/random.hpp"
@@ -31,6 +32,18 @@ class VesselPath {
   /// At `time_s` >= 0.
   State at(double time_s) const;
 
+  struct Turn {
+    double begin_s;
+    double end_s;
+    double change_rad;  ///< positive to starboard
+  };
+  /// In the order of their times.
+  const std::vector<Turn>& turns() const { return turns_; }
+  /// The first one that begins before `end_s`, or nothing.
+  std::optional<Turn> first_turn(double end_s) const {
+    return turns_.empty() || turns_.front().begin_s >= end_s ? std::nullopt : std::optional(turns_.front());
+  }
+
  private:
   struct Leg {
     double begin_s;
@@ -40,6 +53,7 @@ class VesselPath {
   };
   double speed_mps_;
   std::vector<Leg> legs_;
+  std::vector<Turn> turns_;
 };
 
 /// A vessel of a scenario; each run draws one.

@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "truebearing/simulation/bearings_only_scenario.hpp"
-#include "truebearing/tma/bearings_only_batch.hpp"
+#include "truebearing/tma/target_motion_batch.hpp"
 #include "truebearing/tma/cho_2015.hpp"
 
 namespace truebearing::bench {
@@ -43,9 +43,9 @@ void cho(benchmark::State& state, ChoOptions::Method method) {
   state.counters["least_cost"] = estimate.cost;
 }
 
-void modified_polar(benchmark::State& state, BearingsOnlyBatchOptions options) {
+void modified_polar(benchmark::State& state, TargetMotionBatchOptions options) {
   const BearingWindow window = window_of(bearings_problem(static_cast<int>(state.range(0))));
-  BearingsOnlyBatch batch(std::move(options));
+  TargetMotionBatch batch(std::move(options));
   BatchEstimate estimate;
   for (auto _ : state) benchmark::DoNotOptimize(estimate = batch.solve(window));
   state.counters["least_cost"] = estimate.cost;
@@ -58,8 +58,8 @@ void sizes(benchmark::internal::Benchmark* timed) {
 
 BENCHMARK_CAPTURE(cho, levenberg_marquardt_225, ChoOptions::Method::levenberg_marquardt)->Apply(sizes);
 BENCHMARK_CAPTURE(cho, gauss_newton_225, ChoOptions::Method::gauss_newton)->Apply(sizes);
-BENCHMARK_CAPTURE(modified_polar, three_starts, BearingsOnlyBatchOptions{})->Apply(sizes);
-BENCHMARK_CAPTURE(modified_polar, one_start, BearingsOnlyBatchOptions{.start_ranges_m = {6000.0}})->Apply(sizes);
+BENCHMARK_CAPTURE(modified_polar, three_starts, TargetMotionBatchOptions{})->Apply(sizes);
+BENCHMARK_CAPTURE(modified_polar, one_start, TargetMotionBatchOptions{.start_ranges_m = {6000.0}})->Apply(sizes);
 
 }  // namespace
 

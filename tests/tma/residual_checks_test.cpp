@@ -4,8 +4,9 @@
 
 #include <cmath>
 
+#include "tests/support/bearing_frequency_runs.hpp"
 #include "tests/support/bearing_runs.hpp"
-#include "truebearing/tma/bearings_only_batch.hpp"
+#include "truebearing/tma/target_motion_batch.hpp"
 
 namespace truebearing {
 namespace {
@@ -33,7 +34,7 @@ BearingWindow with_a_manoeuvre(const Eigen::Vector2d& change_mps, double change_
 TEST(ResidualChecks, RarelyAlarmWhereNothingIsWrong) {
   constexpr int kRuns = 1000;
   const auto scenario = data_scenario("bearings_only_observable");
-  BearingsOnlyBatch batch;
+  TargetMotionBatch batch;
   int manoeuvres = 0, unfit = 0, coloured = 0;
   for (std::uint64_t run = 0; run < kRuns; ++run) {
     const BearingWindow window = window_of(scenario->simulate({7, Role::evaluation, run}));
@@ -49,7 +50,7 @@ TEST(ResidualChecks, RarelyAlarmWhereNothingIsWrong) {
 }
 
 TEST(ResidualChecks, FindAManoeuvreInsideTheWindowAndItsTime) {
-  BearingsOnlyBatch batch;
+  TargetMotionBatch batch;
   double mean_s = 0.0;
   for (std::uint64_t run = 0; run < 20; ++run) {
     const BearingWindow window = with_a_manoeuvre({5.0, -3.0}, 700.0, run);
@@ -61,7 +62,7 @@ TEST(ResidualChecks, FindAManoeuvreInsideTheWindowAndItsTime) {
 }
 
 TEST(ResidualChecks, NoticeNoiseLargerThanItIsSaidToBe) {
-  BearingsOnlyBatch batch;
+  TargetMotionBatch batch;
   const BearingWindow window = two_legs(kTarget, 300.0, 1200.0, 2.0);
   EXPECT_FALSE(check_residuals(window, batch.solve(window)).fits);
 }
@@ -75,8 +76,53 @@ TEST(ResidualChecks, NoticeNoiseThatIsNotWhite) {
     noise = 0.8 * noise + 0.6 * stream.normal();
     window.add(clean.time_s(i), clean.bearing_rad(i) + radians(1.0) * noise, radians(1.0), clean.site_m(i));
   }
-  BearingsOnlyBatch batch;
+  TargetMotionBatch batch;
   EXPECT_FALSE(check_residuals(window, batch.solve(window)).white);
+}
+
+TEST(ResidualChecks, OfBearingsAndFrequenciesRarelyAlarmWhereNothingIsWrong) {
+  constexpr int kRuns = 1000;
+  TargetMotionBatch batch;
+  int manoeuvres = 0, unfit = 0, coloured = 0;
+  for (std::uint64_t run = 0; run < kRuns; ++run) {
+    const auto [bearings, frequencies] = testing::KimSong::windows(run);
+    const ResidualChecks checks =
+        check_residuals(bearings, batch.solve(bearings, std::nullopt, nullptr, &frequencies), &frequencies);
+    EXPECT_EQ(checks.degrees_of_freedom, 151 + 151 - 5);
+    manoeuvres += checks.manoeuvred;
+    unfit += !checks.fits;
+    coloured += !checks.white;
+  }
+  EXPECT_LT(manoeuvres, 9);
+  EXPECT_LT(unfit, 9);
+  EXPECT_LT(coloured, 9);
+}
+
+TEST(ResidualChecks, FrequenciesShowAManoeuvreThatBearingsDoNot) {
+  TargetMotionBatch batch;
+  int heard = 0, seen = 0;
+  for (std::uint64_t run = 0; run < 20; ++run) {
+    RandomStream stream({1, Role::evaluation, run}, StreamId::test);
+    BearingWindow bearings;
+    DopplerWindow frequencies;
+    const Eigen::Vector2d change_mps(0.0, 0.8);
+    for (double t = 0.0; t <= testing::KimSong::kEnd_s; t += 7.0) {
+      const SensorState own = testing::KimSong::own_ship(t);
+      Eigen::Matrix<double, 5, 1> x;
+      x << testing::KimSong::target(t), 100.0;
+      x.head<2>() += std::max(t - 500.0, 0.0) * change_mps;
+      if (t > 500.0) x.segment<2>(2) += change_mps;
+      const Eigen::Vector2d z = BearingFrequency<>{own.position_m, own.velocity_mps, 1.0, 1.0}.h(x);
+      bearings.add(t, z[0] + radians(1.0) * stream.normal(), radians(1.0), own.position_m);
+      frequencies.add(t, z[1] + 0.02 * stream.normal(), 0.02, own);
+    }
+    const ResidualChecks both =
+        check_residuals(bearings, batch.solve(bearings, std::nullopt, nullptr, &frequencies), &frequencies);
+    heard += both.manoeuvred && std::abs(both.manoeuvre_s - 500.0) < 150.0;
+    seen += check_residuals(bearings, batch.solve(bearings)).manoeuvred;
+  }
+  EXPECT_GE(heard, 18);
+  EXPECT_LE(seen, 5);
 }
 
 }  // namespace

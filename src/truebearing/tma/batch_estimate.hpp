@@ -12,6 +12,7 @@ struct BatchEstimate {
   Eigen::Vector4d x = Eigen::Vector4d::Zero();  ///< [east, north, v_east, v_north] in m and m/s at time_s
   Eigen::Matrix4d P = Eigen::Matrix4d::Zero();  ///< inverse of the information at the estimate, carried to time_s
   double cost = 0.0;                            ///< 1/2 sum of squared normalised residuals, without a prior's share
+  double objective = 0.0;                       ///< with it, of TargetMotionBatch
   int iterations = 0;                           ///< of the start that won
   int starts = 0;
   int non_finite_starts = 0;

@@ -81,6 +81,56 @@ namespace {
   out = {0.5 * cost, {g0, g1, g2, g3}, {a00, a10, a11, a20, a21, a22, a30, a31, a32, a33}};
 }
 
+[[gnu::always_inline]] inline void sum_frequencies(const FrequencyArrays& in, const double* y, double mean_hz,
+                                                   double sound_mps, FrequencySums& out) {
+  const double sine = std::sin(y[0]), cosine = std::cos(y[0]), rate = y[1], closing = y[2], rho = y[3];
+  const double r = 1.0 / rho, rate_mps = r * rate, closing_mps = r * closing, slowness = 1.0 / sound_mps;
+  double squares = 0, information = 0, product = 0, g0 = 0, g1 = 0, g2 = 0, g3 = 0, s0 = 0, s1 = 0, s2 = 0, s3 = 0,
+         a00 = 0, a10 = 0, a11 = 0, a20 = 0, a21 = 0, a22 = 0, a30 = 0, a31 = 0, a32 = 0, a33 = 0;
+#pragma omp simd reduction(+ : squares, information, product, g0, g1, g2, g3, s0, s1, s2, s3, \
+                           a00, a10, a11, a20, a21, a22, a30, a31, a32, a33)
+  for (std::size_t i = 0; i < in.count; ++i) {
+    const double t = in.time_s[i];
+    const double d_par = in.east_m[i] * sine + in.north_m[i] * cosine;
+    const double d_perp = in.east_m[i] * cosine - in.north_m[i] * sine;
+    const double e_par = in.east_mps[i] * sine + in.north_mps[i] * cosine;
+    const double e_perp = in.east_mps[i] * cosine - in.north_mps[i] * sine;
+    const double u = 1.0 + closing * t - rho * d_par, v = rate * t - rho * d_perp;
+    const double inverse = 1.0 / std::sqrt(u * u + v * v), U = u * inverse, V = v * inverse;
+    const double along = closing_mps - e_par, across = rate_mps - e_perp;  // the relative velocity
+    const double q = slowness * (along * U + across * V), shift = 1.0 - q;
+    const double turn = (across * U - along * V) * inverse;
+    const double q0 = slowness * (V * e_par - U * e_perp + rho * turn * (U * d_par + V * d_perp)),
+                 q1 = slowness * (V * r + turn * U * t), q2 = slowness * (U * r - turn * V * t),
+                 q3 = slowness * (turn * (V * d_par - U * d_perp) - r * (closing_mps * U + rate_mps * V));
+    const double w = in.weight[i], residual = in.above_hz[i] + mean_hz * q, wr = w * residual, ws = w * shift;
+    squares += wr * residual;
+    information += ws * shift;
+    product += wr * shift;
+    g0 += wr * q0;
+    g1 += wr * q1;
+    g2 += wr * q2;
+    g3 += wr * q3;
+    s0 += ws * q0;
+    s1 += ws * q1;
+    s2 += ws * q2;
+    s3 += ws * q3;
+    const double w0 = w * q0, w1 = w * q1, w2 = w * q2, w3 = w * q3;
+    a00 += w0 * q0;
+    a10 += w1 * q0;
+    a11 += w1 * q1;
+    a20 += w2 * q0;
+    a21 += w2 * q1;
+    a22 += w2 * q2;
+    a30 += w3 * q0;
+    a31 += w3 * q1;
+    a32 += w3 * q2;
+    a33 += w3 * q3;
+  }
+  out = {squares,          information,      product,
+         {g0, g1, g2, g3}, {s0, s1, s2, s3}, {a00, a10, a11, a20, a21, a22, a30, a31, a32, a33}};
+}
+
 #if defined(__x86_64__) && defined(__GNUC__)
 const bool kHasFma = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
 
@@ -92,10 +142,15 @@ const bool kHasFma = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("f
                                                         double huber_sigmas, ModifiedPolarSums& out) {
   sum_modified_polar(in, y, origin_s, huber_sigmas, out);
 }
+[[gnu::target("avx2,fma")]] void sum_frequencies_fma(const FrequencyArrays& in, const double* y, double mean_hz,
+                                                     double sound_mps, FrequencySums& out) {
+  sum_frequencies(in, y, mean_hz, sound_mps, out);
+}
 #else
 constexpr bool kHasFma = false;
 constexpr auto sum_cartesian_fma = sum_cartesian;
 constexpr auto sum_modified_polar_fma = sum_modified_polar;
+constexpr auto sum_frequencies_fma = sum_frequencies;
 #endif
 
 }  // namespace
@@ -116,6 +171,15 @@ ModifiedPolarSums modified_polar_sums(const BearingArrays& bearings, const doubl
     sum_modified_polar_fma(bearings, y, origin_s, huber_sigmas, sums);
   else
     sum_modified_polar(bearings, y, origin_s, huber_sigmas, sums);
+  return sums;
+}
+
+FrequencySums frequency_sums(const FrequencyArrays& frequencies, const double* y, double mean_hz, double sound_mps) {
+  FrequencySums sums;
+  if (kHasFma)
+    sum_frequencies_fma(frequencies, y, mean_hz, sound_mps, sums);
+  else
+    sum_frequencies(frequencies, y, mean_hz, sound_mps, sums);
   return sums;
 }
 

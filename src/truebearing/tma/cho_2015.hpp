@@ -1,5 +1,5 @@
 // Bearings-only target-motion analysis as Cho 2015 has it: Gauss-Newton, Levenberg and Levenberg-Marquardt in Cartesian
-// coordinates from 15 x 15 starts, at most ten steps, every step taken. Baselines: bearings_only_batch.hpp does better.
+// coordinates from 15 x 15 starts, at most ten steps, every step taken. Baselines: target_motion_batch.hpp does better.
 //
 // Corrected against the print: the steps are +(J'WJ)^-1 J'W(B - B_hat) (equations 9 and 10 ascend with their minus);
 // the gain ratio's denominator is 1/2 h'(mu D h + J'W(B - B_hat)); equation 12's second threshold is .75; a start's

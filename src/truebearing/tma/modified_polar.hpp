@@ -30,6 +30,9 @@ class ModifiedPolar {
   NormalEquations<4> operator()(const Eigen::Vector4d& y) const;
 
   double origin_s() const { return origin_s_; }
+  /// Own ship's line: its position at origin_s() and its velocity.
+  const Eigen::Vector2d& line_m() const { return line_m_; }
+  const Eigen::Vector2d& line_mps() const { return line_mps_; }
   double length_s() const { return window_->last_time_s() - window_->first_time_s(); }
   /// Root mean square of d(t), m: how far own ship was from its line.
   double departure_m() const { return departure_m_; }

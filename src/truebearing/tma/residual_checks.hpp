@@ -1,11 +1,13 @@
 // What the residuals of a batch estimate say of its assumptions: are they as large as their standard deviations, are
 // they white, and did the target change its velocity inside the window? The last by a score test for a change at each
 // of a number of times: the residuals are projected on what the change would do to them, after what the four parameters
-// can take of that. Its statistic is chi-square with two degrees of freedom where there was no change.
+// (and the f0s of the source) can take of that. Its statistic is chi-square with two degrees of freedom where there was
+// no change.
 #pragma once
 
 #include "truebearing/tma/batch_estimate.hpp"
 #include "truebearing/tma/bearing_window.hpp"
+#include "truebearing/tma/doppler_window.hpp"
 
 namespace truebearing {
 
@@ -21,7 +23,8 @@ struct ResidualChecks {
   bool manoeuvred = false;  ///< the largest score would come by chance in less than one window of a thousand
 };
 
-/// `estimate` must have been made from `window`, of five bearings or more.
-ResidualChecks check_residuals(const BearingWindow& window, const BatchEstimate& estimate);
+/// `estimate` must have been made from `window`, of five bearings or more, and from `frequencies` where given.
+ResidualChecks check_residuals(const BearingWindow& window, const BatchEstimate& estimate,
+                               const DopplerWindow* frequencies = nullptr);
 
 }  // namespace truebearing

@@ -1,13 +1,15 @@
-#include "truebearing/tma/bearings_only_batch.hpp"
+#include "truebearing/tma/target_motion_batch.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 
 #include "tests/support/allocation_count.hpp"
+#include "tests/support/bearing_frequency_runs.hpp"
 #include "tests/support/bearing_runs.hpp"
 #include "truebearing/core/covariance.hpp"
 #include "truebearing/measurement/fisher_information.hpp"
+#include "truebearing/tma/frequency_changes.hpp"
 
 namespace truebearing {
 namespace {
@@ -25,8 +27,8 @@ Eigen::Vector4d at_end(double t) {
   return x;
 }
 
-TEST(BearingsOnlyBatch, FindsTheTargetOfExactBearings) {
-  BearingsOnlyBatch batch;
+TEST(TargetMotionBatch, FindsTheTargetOfExactBearings) {
+  TargetMotionBatch batch;
   const BatchEstimate estimate = batch.solve(two_legs(kTarget, 300.0, 600.0));
   ASSERT_TRUE(estimate.found);
   EXPECT_LT((estimate.x - at_end(600.0)).norm(), 1e-3);
@@ -35,17 +37,17 @@ TEST(BearingsOnlyBatch, FindsTheTargetOfExactBearings) {
   EXPECT_EQ(estimate.non_finite_starts, 0);
 }
 
-TEST(BearingsOnlyBatch, CovarianceIsTheBoundAtTheEstimate) {
+TEST(TargetMotionBatch, CovarianceIsTheBoundAtTheEstimate) {
   const BearingWindow window = two_legs(kTarget, 300.0, 600.0);
-  BearingsOnlyBatch batch;
+  TargetMotionBatch batch;
   const BatchEstimate estimate = batch.solve(window);
   const Eigen::Matrix4d information = window.cartesian(estimate.x, estimate.time_s).A;
   EXPECT_LT((estimate.P * information - Eigen::Matrix4d::Identity()).norm(), 1e-3);
 }
 
-TEST(BearingsOnlyBatch, TurnsAndShiftsWithTheFrame) {
+TEST(TargetMotionBatch, TurnsAndShiftsWithTheFrame) {
   const BearingWindow window = two_legs(kTarget, 300.0, 900.0, 1.0);
-  BearingsOnlyBatch batch;
+  TargetMotionBatch batch;
   const BatchEstimate plain = batch.solve(window);
   for (const double angle : {0.3, 2.0, -1.7, 3.1}) {
     const Eigen::Rotation2Dd rotation(-angle);  // clockwise
@@ -65,21 +67,21 @@ TEST(BearingsOnlyBatch, TurnsAndShiftsWithTheFrame) {
   }
 }
 
-TEST(BearingsOnlyBatch, WholeTurnsChangeNothing) {
+TEST(TargetMotionBatch, WholeTurnsChangeNothing) {
   const BearingWindow window = two_legs(kTarget, 300.0, 900.0, 1.0);
   BearingWindow turned;
   for (std::size_t i = 0; i < window.size(); ++i)
     turned.add(window.time_s(i), window.bearing_rad(i) + 2.0 * kPi * static_cast<double>(i % 3), radians(1.0),
                window.site_m(i));
-  BearingsOnlyBatch batch;
+  TargetMotionBatch batch;
   EXPECT_LT((batch.solve(window).x - batch.solve(turned).x).norm(), 1e-3);
 }
 
 // A filter that believes in a tenth of the noise is far outside the interval, an honest one inside.
-TEST(BearingsOnlyBatch, IsConsistentAndEfficientWhereTheRangeIsObservable) {
+TEST(TargetMotionBatch, IsConsistentAndEfficientWhereTheRangeIsObservable) {
   constexpr int kRuns = 200;
   const auto scenario = data_scenario("cho_s1");
-  BearingsOnlyBatch batch;
+  TargetMotionBatch batch;
   double nees = 0.0, boastful = 0.0;
   for (int run = 0; run < kRuns; ++run) {
     const Recording recording = scenario->simulate({5, Role::evaluation, static_cast<std::uint64_t>(run)});
@@ -93,22 +95,22 @@ TEST(BearingsOnlyBatch, IsConsistentAndEfficientWhereTheRangeIsObservable) {
   EXPECT_GT(boastful, 4.95);
 }
 
-TEST(BearingsOnlyBatch, ThreeStartsFindWhatTwoHundredAndTwentyFiveFind) {
+TEST(TargetMotionBatch, ThreeStartsFindWhatTwoHundredAndTwentyFiveFind) {
   const auto scenario = data_scenario("bearings_only_observable");
-  BearingsOnlyBatch few;
-  BearingsOnlyBatch many({.start_grid = true});
+  TargetMotionBatch few;
+  TargetMotionBatch many({.start_grid = true});
   for (std::uint64_t run = 0; run < 50; ++run) {
     const BearingWindow window = window_of(scenario->simulate({3, Role::evaluation, run}));
     EXPECT_LE(few.solve(window).cost, many.solve(window).cost + 1e-6) << run;
   }
 }
 
-TEST(BearingsOnlyBatch, PriorKeepsAnUnobservableRange) {
+TEST(TargetMotionBatch, PriorKeepsAnUnobservableRange) {
   const BearingWindow window = two_legs(kTarget, 1e9, 600.0, 1.0);
   BatchPrior prior;
   prior.velocity_information = Eigen::Matrix2d::Identity() / 25.0;
   prior.range = BatchPrior::Range{5800.0, 500.0, {0.0, 0.0}, 0.0};
-  BearingsOnlyBatch batch;
+  TargetMotionBatch batch;
   const BatchEstimate estimate = batch.solve(window, prior);
   ASSERT_TRUE(estimate.found);
   EXPECT_NEAR((estimate.x - 600.0 * Eigen::Vector4d(estimate.x[2], estimate.x[3], 0, 0)).head<2>().norm(), 5800.0,
@@ -117,19 +119,19 @@ TEST(BearingsOnlyBatch, PriorKeepsAnUnobservableRange) {
   EXPECT_TRUE(is_covariance(estimate.P));
 }
 
-TEST(BearingsOnlyBatch, HuberLossShrugsOffOutliers) {
+TEST(TargetMotionBatch, HuberLossShrugsOffOutliers) {
   const BearingWindow clean = two_legs(kTarget, 300.0, 900.0, 1.0);
   BearingWindow spoilt;
   for (std::size_t i = 0; i < clean.size(); ++i)
     spoilt.add(clean.time_s(i), clean.bearing_rad(i) + (i % 9 == 4 ? radians(25.0) : 0.0), radians(1.0),
                clean.site_m(i));
-  const auto error = [&](BearingsOnlyBatch batch) { return (batch.solve(spoilt).x - at_end(900.0)).head<2>().norm(); };
-  const double plain = error(BearingsOnlyBatch()), robust = error(BearingsOnlyBatch({.huber_sigmas = 1.5}));
+  const auto error = [&](TargetMotionBatch batch) { return (batch.solve(spoilt).x - at_end(900.0)).head<2>().norm(); };
+  const double plain = error(TargetMotionBatch()), robust = error(TargetMotionBatch({.huber_sigmas = 1.5}));
   EXPECT_LT(robust, 0.5 * plain);
 }
 
-TEST(BearingsOnlyBatch, ToldOfAnotherMinimumThatIsNearlyAsGood) {
-  BearingsOnlyBatch batch;
+TEST(TargetMotionBatch, ToldOfAnotherMinimumThatIsNearlyAsGood) {
+  TargetMotionBatch batch;
   batch.solve(two_legs(kTarget, 300.0, 900.0, 1.0));
   EXPECT_TRUE(batch.ambiguities().empty());
   const BatchEstimate best = batch.solve(two_legs(kTarget, 1e9, 900.0, 1.0));  // any range will do
@@ -141,18 +143,80 @@ TEST(BearingsOnlyBatch, ToldOfAnotherMinimumThatIsNearlyAsGood) {
   }
 }
 
-TEST(BearingsOnlyBatch, TooFewBearingsAreNoEstimate) {
-  BearingsOnlyBatch batch;
+TEST(TargetMotionBatch, FindsTheTargetOfExactBearingsAndFrequencies) {
+  const auto [bearings, frequencies] = testing::KimSong::windows(0, testing::jump(0.0), 0.0);
+  TargetMotionBatch batch;
+  const BatchEstimate estimate = batch.solve(bearings, std::nullopt, nullptr, &frequencies);
+  ASSERT_TRUE(estimate.found);
+  EXPECT_LT((estimate.x - testing::KimSong::target(1050.0)).norm(), 1e-2);
+  EXPECT_LT(estimate.cost, 1e-9);
+  EXPECT_TRUE(batch.observability().observable());
+}
+
+TEST(TargetMotionBatch, WithFrequenciesItTurnsAndShiftsWithTheFrame) {
+  const auto [bearings, frequencies] = testing::KimSong::windows(0);
+  TargetMotionBatch batch;
+  const BatchEstimate plain = batch.solve(bearings, std::nullopt, nullptr, &frequencies);
+  for (const double angle : {0.3, 2.0, -1.7, 3.1}) {
+    const Eigen::Matrix2d R = Eigen::Rotation2Dd(-angle).toRotationMatrix();  // clockwise
+    const Eigen::Vector2d shift(12345.0, -6789.0);
+    BearingWindow moved;
+    DopplerWindow heard;
+    for (std::size_t i = 0; i < bearings.size(); ++i) {
+      const SensorState& own = frequencies.sensor(i);
+      // Whole turns change nothing either.
+      moved.add(bearings.time_s(i) + 1000.0, bearings.bearing_rad(i) + angle + 2.0 * kPi * static_cast<double>(i % 3),
+                radians(1.0), R * own.position_m + shift);
+      heard.add(bearings.time_s(i) + 1000.0, frequencies.frequency_hz(i), frequencies.sigma_hz(i),
+                {R * own.position_m + shift, R * own.velocity_mps});
+    }
+    const BatchEstimate turned = batch.solve(moved, std::nullopt, nullptr, &heard);
+    Eigen::Vector4d expected;
+    expected << R * plain.x.head<2>() + shift, R * plain.x.tail<2>();
+    EXPECT_LT((turned.x - expected).norm(), 1e-2) << angle;
+    EXPECT_NEAR(turned.cost, plain.cost, 1e-7);
+  }
+}
+
+TEST(TargetMotionBatch, FrequenciesMayBeFewerThanBearingsOrBetweenThem) {
+  const auto [bearings, frequencies] = testing::KimSong::windows(0);
+  BearingWindow odd;
+  DopplerWindow even;
+  for (std::size_t i = 0; i < bearings.size(); ++i) {
+    if (i % 2 == 1)
+      odd.add(bearings.time_s(i), bearings.bearing_rad(i), radians(1.0), bearings.site_m(i));
+    else
+      even.add(frequencies.time_s(i), frequencies.frequency_hz(i), 0.02, frequencies.sensor(i));
+  }
+  TargetMotionBatch batch;
+  const BatchEstimate estimate = batch.solve(odd, std::nullopt, nullptr, &even);
+  ASSERT_TRUE(estimate.found);
+  EXPECT_LT((estimate.x - testing::KimSong::target(odd.last_time_s())).head<2>().norm(), 4.5 * std::sqrt(2.0) * 155.0);
+  const DopplerWindow none;
+  EXPECT_EQ(batch.solve(bearings, std::nullopt, nullptr, &none).x, batch.solve(bearings).x);
+}
+
+TEST(TargetMotionBatch, RefiningFromAnEstimateLeavesItWhereItIs) {
+  const auto [bearings, frequencies] = testing::KimSong::windows(1);
+  TargetMotionBatch batch;
+  const BatchEstimate estimate = batch.solve(bearings, std::nullopt, nullptr, &frequencies);
+  const BatchEstimate refined = batch.refine(estimate.x, bearings, std::nullopt, &frequencies);
+  EXPECT_LT((refined.x - estimate.x).norm(), 0.1);
+  EXPECT_NEAR(refined.objective, estimate.objective, 1e-6);
+}
+
+TEST(TargetMotionBatch, TooFewBearingsAreNoEstimate) {
+  TargetMotionBatch batch;
   BearingWindow window;
   EXPECT_FALSE(batch.solve(window).found);
   for (int k = 0; k < 5; ++k) window.add(10.0, 0.3, 0.02, {0.0, 0.0});  // all at one time
   EXPECT_FALSE(batch.solve(window).found);
 }
 
-TEST(BearingsOnlyBatch, OneBearingAgainAndAgainFromAShipAtRestIsFiniteAndNothing) {
+TEST(TargetMotionBatch, OneBearingAgainAndAgainFromAShipAtRestIsFiniteAndNothing) {
   BearingWindow window;
   for (int k = 0; k < 20; ++k) window.add(10.0 * k, 0.7, radians(1.0), {100.0, 200.0});
-  BearingsOnlyBatch batch;
+  TargetMotionBatch batch;
   const BatchEstimate estimate = batch.solve(window);
   ASSERT_TRUE(estimate.found);
   EXPECT_TRUE(estimate.x.allFinite());
@@ -160,11 +224,19 @@ TEST(BearingsOnlyBatch, OneBearingAgainAndAgainFromAShipAtRestIsFiniteAndNothing
   EXPECT_FALSE(batch.observability().observable());
 }
 
-TEST(BearingsOnlyBatch, SecondSolutionAllocatesNothing) {
+TEST(TargetMotionBatch, SecondSolutionAllocatesNothing) {
   const BearingWindow window = two_legs(kTarget, 300.0, 900.0, 1.0);
-  BearingsOnlyBatch batch;
+  TargetMotionBatch batch;
   batch.solve(window);
   EXPECT_EQ(testing::allocations_of([&] { batch.solve(window); }), 0);
+}
+
+TEST(TargetMotionBatch, SecondSolutionOfASourceThatChangedAllocatesNothing) {
+  testing::BearingFrequencyWindows windows = testing::KimSong::windows(4, testing::jump(30.0, 600.0, 800.0));
+  TargetMotionBatch batch;
+  FrequencyChangeBatch changes;
+  changes.solve(batch, windows.bearings, windows.frequencies);
+  EXPECT_EQ(testing::allocations_of([&] { changes.solve(batch, windows.bearings, windows.frequencies); }), 0);
 }
 
 }  // namespace

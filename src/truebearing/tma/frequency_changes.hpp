@@ -1,0 +1,103 @@
+// Sources that change their tone: which of a window's frequencies belong to one level of f0, found by an edge detector
+// (Kim and Song: |z_k - z_k-1| / (sqrt(2) sigma) against a threshold gamma) and, for jumps that are too small for it,
+// by a score scan of the residuals after a batch. For every interval [a, b) of a level, w the weights, g = 1 - v_r / c:
+//
+//     s = sum_[a,b) w g r,   V = the sum of w g^2 there less what the state and the levels' f0s can take of it
+//
+// s^2 / V is chi-square with one degree of freedom where f0 did not differ there. (The paper leaves out the frequencies
+// once an edge is found. One f0 for each level costs no accuracy.) A target that changes its velocity sounds much like
+// a small jump of its tone, and is taken for one.
+#pragma once
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "truebearing/tma/target_motion_batch.hpp"
+
+namespace truebearing {
+
+struct FrequencyChangeOptions {
+  enum class Handling {
+    ignored,        ///< one f0 for all: wrong where the source did change
+    bearings_only,  ///< as the paper: with an edge anywhere, no frequency is used
+    segments,       ///< one f0 from edge to edge
+    levels          ///< segments of equal f0 made one, and small jumps looked for
+  };
+  Handling handling = Handling::levels;
+  double false_alarm_probability = 1.5e-6;  ///< of the edge detector, per pair of frequencies
+  double scan_threshold = 25.0;             ///< of s^2 / V, over all intervals
+  double alike = 9.0;                       ///< likelihood ratio, 2 ln, below which two levels are one
+  int most_splits = 8;                      ///< by the scan
+};
+
+/// From this frequency on the source has another f0.
+struct FrequencyChange {
+  double time_s;
+  double frequency_hz;
+};
+
+/// The number of edges so far, for each frequency. `gamma` in standard deviations of a difference.
+void number_segments(const DopplerWindow& frequencies, double gamma, std::vector<int>& segment);
+
+/// The interval whose f0 differs most from that of its level: the positions of its frequencies in the window, of which
+/// those of other levels do not count.
+struct IntervalScore {
+  double statistic = 0.0;
+  std::size_t begin = 0, end = 0;
+  int level = 0;
+};
+
+/// Batch estimates from bearings and from the frequencies of a source that may change its tone.
+class FrequencyChangeBatch {
+ public:
+  explicit FrequencyChangeBatch(FrequencyChangeOptions options = {});
+
+  /// As TargetMotionBatch::solve, which does the work. Sets the levels of `frequencies`.
+  BatchEstimate solve(TargetMotionBatch& batch, const BearingWindow& window, DopplerWindow& frequencies,
+                      const std::optional<BatchPrior>& prior = std::nullopt, const Eigen::Vector4d* warm = nullptr);
+
+  // Of the last call of solve():
+
+  /// False where they were left out.
+  bool used_frequencies() const { return used_; }
+  /// A level of one frequency is an outlier and no change, or not yet.
+  std::span<const FrequencyChange> changes() const { return changes_; }
+  /// The level that the source has at the end.
+  int last_level() const { return last_level_; }
+
+  /// The score scan at an estimate that was made from these levels.
+  IntervalScore scan(const DopplerWindow& frequencies, const BatchEstimate& estimate);
+
+ private:
+  /// Makes levels one until no two are alike; false where there was nothing to do.
+  bool merge(TargetMotionBatch& batch, const BearingWindow& window, const std::optional<BatchPrior>& prior,
+             DopplerWindow& frequencies, BatchEstimate& estimate);
+  void split(const IntervalScore& interval, DopplerWindow& frequencies);
+  void list_changes(const DopplerWindow& frequencies, const BatchEstimate& estimate);
+
+  FrequencyChangeOptions options_;
+  double gamma_;
+  bool used_ = true;
+  int last_level_ = 0;
+  std::vector<FrequencyChange> changes_;
+
+  // Scratch.
+  struct Sum {
+    double residual, information;  // of w g r, w g^2
+    Eigen::Vector4d coupling;      // of w g J L, with P = L L'
+    std::size_t begin;             // the place of the frequency that comes next
+  };
+  struct Ranked {
+    double frequency_hz;
+    int level;
+    std::size_t first;  // frequency that has it
+  };
+  std::vector<Sum> sums_;
+  std::vector<Ranked> ranked_;
+  std::vector<SourceFrequency> sources_;
+  std::vector<int> level_, merged_;
+  std::vector<std::pair<std::size_t, std::size_t>> apart_;
+};
+
+}  // namespace truebearing

@@ -11,9 +11,9 @@
 namespace truebearing {
 namespace {
 
-using testing::error_message;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
+using testing::error_message;
 using ::testing::HasSubstr;
 
 struct Read {
@@ -57,6 +57,20 @@ TEST(TimedScoring, NothingAskedForIsNothing) {
   EXPECT_FALSE(read("times_s = [1.0]\nbound = { kind = \"cramer_rao\" }").timed.cramer_rao->prior);
 }
 
+TEST(TimedScoring, BoundsOfPassiveSonar) {
+  const Read made = read(
+      "times_s = [1050.0]\ntarget_motion = true\nbound = { kind = \"cramer_rao\", frequencies = false, "
+      "frequency_sigma_hz = 0.03, sound_mps = 1480.0 }",
+      plane_frequency_space());
+  EXPECT_FALSE(made.timed.cramer_rao->frequencies);
+  EXPECT_EQ(made.timed.cramer_rao->frequency_sigma_hz, 0.03);
+  EXPECT_EQ(made.timed.cramer_rao->sound_mps, 1480.0);
+  const auto plain =
+      read("times_s = [1.0]\nbound = { kind = \"cramer_rao\" }", plane_frequency_space()).timed.cramer_rao;
+  EXPECT_TRUE(plain->frequencies);
+  EXPECT_EQ(plain->sound_mps, 1500.0);
+}
+
 TEST(TimedScoring, WhatCannotBeScoredIsRefused) {
   EXPECT_THAT(refusal("times_s = [2.0, 1.0]"), AllOf(HasSubstr("scoring.times_s"), HasSubstr("ascending")));
   EXPECT_THAT(refusal("times_s = [1.0, 1.0]"), HasSubstr("ascending"));
@@ -64,10 +78,13 @@ TEST(TimedScoring, WhatCannotBeScoredIsRefused) {
   EXPECT_THAT(refusal("target_motion = true"), HasSubstr("times_s"));
   EXPECT_THAT(refusal("bound = { kind = \"cramer_rao\" }"), HasSubstr("times_s"));
   EXPECT_THAT(refusal("global_minimum = \"a\""), HasSubstr("times_s"));
-  EXPECT_THAT(refusal("times_s = [1.0]\ntarget_motion = true", line_space()), AllOf(HasSubstr("scoring.target_motion"), HasSubstr("plane")));
-  EXPECT_THAT(refusal("times_s = [1.0]\nbound = { kind = \"cramer_rau\" }"), AllOf(HasSubstr("scoring.bound.kind"), HasSubstr("cramer_rao")));
+  EXPECT_THAT(refusal("times_s = [1.0]\ntarget_motion = true", line_space()),
+              AllOf(HasSubstr("scoring.target_motion"), HasSubstr("plane")));
+  EXPECT_THAT(refusal("times_s = [1.0]\nbound = { kind = \"cramer_rau\" }"),
+              AllOf(HasSubstr("scoring.bound.kind"), HasSubstr("cramer_rao")));
   EXPECT_THAT(refusal("times_s = [1.0]\nbound = { kind = \"cramer_rao\", q = 1.0 }"), HasSubstr("scoring.bound.q"));
-  EXPECT_THAT(refusal("times_s = [1.0]\nbound = { kind = \"cramer_rao\", prior = { kind = \"rang\" } }"), HasSubstr("scoring.bound.prior"));
+  EXPECT_THAT(refusal("times_s = [1.0]\nbound = { kind = \"cramer_rao\", prior = { kind = \"rang\" } }"),
+              HasSubstr("scoring.bound.prior"));
 }
 
 TEST(TimedScoring, InAStudy) {

@@ -138,7 +138,7 @@ transition = { leave_first = 0.05, leave_other = 0.1, to_first = 0.7, period_s =
   EXPECT_LT(last_error(*make(two + longer + modes(quiet, turning), "imm"), false), 5.0);
   EXPECT_TRUE(make(head + two_point + modes(quiet, turns), "imm")->blocks().mode_probabilities);
   EXPECT_THAT(error_message([&] { make(two + longer + modes(lively, turning), "imm"); }), HasSubstr("one of the two"));
-  EXPECT_THAT(error_message([&] { make(head + two_point + "modes = [" + quiet + "]\n", "imm"); }), HasSubstr("2 to 8"));
+  EXPECT_THAT(error_message([&] { make(head + two_point + "modes = [" + quiet + "]\n", "imm"); }), HasSubstr("2 to 10"));
   EXPECT_THAT(error_message([&] {
                 make(replaced(head, "leave_first = 0.05, leave_other = 0.1, to_first = 0.7", "matrix = [0.9, 0.1, 0.3, 0.6]") +
                          two_point + modes(quiet, quiet), "imm");

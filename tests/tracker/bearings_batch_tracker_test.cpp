@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "tests/support/bearing_frequency_runs.hpp"
 #include "tests/support/bearing_runs.hpp"
 #include "truebearing/core/covariance.hpp"
 
@@ -11,6 +12,8 @@ namespace truebearing {
 namespace {
 
 using testing::data_scenario;
+using testing::jump;
+using testing::KimSong;
 
 BearingsBatchOptions options() {
   BearingsBatchOptions o;
@@ -99,7 +102,10 @@ TEST(BearingsBatchTracker, ForgetsWhatWasBeforeAManoeuvreThatItNotices) {
     BoundedVector x;
     for (const Measurement& m : recording.measurements)
       if (const auto records = tracker.step(m); !records.empty()) x = records.front().x;
-    return std::pair((x - recording.truth[0].x.back()).head<2>().norm(), tracker.manoeuvres_s());
+    std::vector<double> noticed_s;
+    for (const TrackEvent& event : tracker.events())
+      if (event.kind == TrackEvent::Kind::turn_began) noticed_s.push_back(event.time_s);
+    return std::pair((x - recording.truth[0].x.back()).head<2>().norm(), noticed_s);
   };
   const auto [averaged_m, none] = run_with(false);
   const auto [cut_m, noticed] = run_with(true);
@@ -161,6 +167,145 @@ TEST(BearingsBatchTracker, CloneAndResetStartAfresh) {
   tracker.reset();
   EXPECT_EQ(last(tracker), first);
   EXPECT_EQ(last(*clone), first);
+}
+
+// z = [bearing, frequency] of Kim and Song's scenario.
+std::vector<Measurement> heard(std::uint64_t run, const std::function<double(double)>& f0_hz) {
+  RandomStream stream({1, Role::evaluation, run}, StreamId::test);
+  std::vector<Measurement> measurements;
+  for (double t = 0.0; t <= KimSong::kEnd_s; t += KimSong::kPeriod_s)
+    measurements.push_back(
+        {.time_s = t, .z = KimSong::measured(t, f0_hz(t), 1.0, stream), .sigma = {}, .sensor = KimSong::own_ship(t)});
+  return measurements;
+}
+
+BearingsBatchOptions with_frequencies(double solve_every_s = 1050.0) {
+  BearingsBatchOptions o = options();
+  o.frequency.emplace();
+  o.frequency->sigma_hz = KimSong::kSigma_hz;
+  o.solve_every_s = solve_every_s;
+  if (solve_every_s >= KimSong::kEnd_s) o.solve_at_s = {KimSong::kEnd_s};
+  return o;
+}
+
+std::vector<TrackEvent> events_of(const Tracker& tracker, TrackEvent::Kind kind) {
+  std::vector<TrackEvent> events;
+  for (const TrackEvent& event : tracker.events())
+    if (event.kind == kind) events.push_back(event);
+  return events;
+}
+
+TEST(BearingsBatchTracker, WithFrequenciesTheStateHasTheSource) {
+  BearingsBatchTracker tracker(with_frequencies());
+  EXPECT_EQ(&tracker.space(), &plane_frequency_space());
+  testing::BearingFrequencyWindows windows = KimSong::windows(0);
+  StepRecord last;
+  for (const Measurement& m : heard(0, jump(0.0)))
+    if (const auto records = tracker.step(m); !records.empty()) last = records.front();
+  ASSERT_EQ(last.x.size(), 5);
+  EXPECT_EQ(last.space, &plane_frequency_space());
+  EXPECT_EQ(last.status, StepStatus::ok);
+  EXPECT_TRUE(is_covariance(last.P));
+  TargetMotionBatch batch;
+  const BatchEstimate expected = batch.solve(windows.bearings, std::nullopt, nullptr, &windows.frequencies);
+  EXPECT_EQ(last.x.head<4>(), expected.x);
+  EXPECT_EQ(tracker.estimate().x, expected.x);
+  EXPECT_NEAR(last.x[4], 100.0, 5.0 * std::sqrt(last.P(4, 4)));
+  EXPECT_NEAR(std::sqrt(last.P(4, 4)), 0.0072, 0.0015);
+}
+
+TEST(BearingsBatchTracker, CarriesTheSourceOnWithItsCovariance) {
+  BearingsBatchOptions o = with_frequencies();
+  BearingsBatchTracker tracker(o);
+  for (const Measurement& m : heard(0, jump(0.0))) tracker.step(m);
+  Measurement none{.time_s = 1050.0, .z = Eigen::Vector2d(NAN, NAN), .sigma = {}, .sensor = std::nullopt};
+  const StepRecord now = tracker.step(none).front();
+  none.time_s = 1150.0;
+  const StepRecord later = tracker.step(none).front();
+  EXPECT_EQ(later.status, StepStatus::coasted);
+  Eigen::MatrixXd F = Eigen::MatrixXd::Identity(5, 5);
+  F(0, 2) = F(1, 3) = 100.0;
+  EXPECT_LT((later.x - F * now.x).norm(), 1e-9 * now.x.norm());
+  EXPECT_LT((later.P - F * now.P * F.transpose()).norm(), 1e-9 * later.P.norm());
+  EXPECT_EQ(tracker.counts().missing, 2);
+}
+
+TEST(BearingsBatchTracker, SaysOnceWhenTheSourceChangedAndWhenTheRangeWasKnown) {
+  BearingsBatchTracker tracker(with_frequencies(35.0));
+  double known_s = 0.0;
+  for (const Measurement& m : heard(1, jump(30.0, 600.0, 800.0))) {
+    const auto records = tracker.step(m);
+    if (known_s == 0.0 && !records.empty() && records.front().status == StepStatus::ok) known_s = m.time_s;
+  }
+  const auto changes = events_of(tracker, TrackEvent::Kind::source_changed);
+  ASSERT_EQ(changes.size(), 2u);
+  EXPECT_EQ(changes[0].time_s, 602.0);
+  EXPECT_NEAR(changes[0].value, 130.0, 0.2);
+  EXPECT_EQ(changes[1].time_s, 805.0);
+  EXPECT_NEAR(changes[1].value, 100.0, 0.2);
+  const auto known = events_of(tracker, TrackEvent::Kind::range_known);
+  ASSERT_EQ(known.size(), 1u);
+  EXPECT_EQ(known[0].time_s, known_s);
+  tracker.reset();
+  EXPECT_TRUE(tracker.events().empty());
+}
+
+TEST(BearingsBatchTracker, EachHandlingOfAChangeDoesWhatItSays) {
+  using Handling = FrequencyChangeOptions::Handling;
+  const auto square = [&](Handling handling) {
+    double sum = 0.0;
+    for (std::uint64_t run = 0; run < 20; ++run) {
+      BearingsBatchOptions o = with_frequencies();
+      o.frequency->changes.handling = handling;
+      BearingsBatchTracker tracker(o);
+      BoundedVector x;
+      for (const Measurement& m : heard(run, jump(30.0, 600.0, 800.0)))
+        if (const auto records = tracker.step(m); !records.empty()) x = records.front().x;
+      EXPECT_TRUE(handling == Handling::ignored || std::abs(x[4] - 100.0) < 0.1) << x[4];
+      sum += (x.head<2>() - KimSong::target(KimSong::kEnd_s).head<2>()).squaredNorm() / 20.0;
+    }
+    return std::sqrt(sum);
+  };
+  const double levels = square(Handling::levels), switched = square(Handling::bearings_only);
+  EXPECT_LT(levels, 155.0 * 1.5);
+  EXPECT_GT(switched, 1.5 * levels);
+  EXPECT_LT(square(Handling::segments), switched);
+  EXPECT_GT(square(Handling::ignored), 5000.0);
+}
+
+TEST(BearingsBatchTracker, EitherOfBearingAndFrequencyMayBeMissing) {
+  std::vector<Measurement> measurements = heard(0, jump(0.0));
+  for (std::size_t k = 0; k < measurements.size(); ++k) {
+    if (k % 3 == 1) measurements[k].z[0] = std::nan("");
+    if (k % 3 == 2) measurements[k].z[1] = std::nan("");
+  }
+  BearingsBatchTracker tracker(with_frequencies());
+  BoundedVector x;
+  for (const Measurement& m : measurements)
+    if (const auto records = tracker.step(m); !records.empty()) x = records.front().x;
+  ASSERT_EQ(x.size(), 5);
+  EXPECT_EQ(tracker.counts().missing, 0);
+  EXPECT_LT((x.head<2>() - KimSong::target(KimSong::kEnd_s).head<2>()).norm(), 4.5 * std::sqrt(1.5) * 155.0);
+}
+
+TEST(BearingsBatchTracker, BeforeAFrequencyIsHeardItsSourceIsOpen) {
+  BearingsBatchTracker tracker(with_frequencies());
+  BearingsBatchTracker of_bearings([] {
+    BearingsBatchOptions o = with_frequencies();
+    o.frequency.reset();
+    return o;
+  }());
+  StepRecord last, expected;
+  for (Measurement m : heard(0, jump(0.0))) {
+    if (const auto records = of_bearings.step(m); !records.empty()) expected = records.front();
+    m.z[1] = std::nan("");
+    if (const auto records = tracker.step(m); !records.empty()) last = records.front();
+  }
+  ASSERT_EQ(last.x.size(), 5);
+  ASSERT_EQ(expected.x.size(), 4);
+  EXPECT_EQ(last.x.head<4>(), expected.x);
+  EXPECT_GE(last.P(4, 4), 1e6);
+  EXPECT_TRUE(is_covariance(last.P));
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ struct Mode {
 template <typename... Modes>
 struct MultipleModels {
   static constexpr int kStates = std::max({Modes::Filter::kStates...});  ///< N
-  static constexpr std::size_t kMaxModes = kMaxDimension;
+  static constexpr std::size_t kMaxModes = truebearing::kMaxModes;
 
   std::vector<std::variant<Modes...>> modes;  ///< r, 1 to kMaxModes
   MarkovChain chain;                          ///< of r modes
@@ -64,15 +64,15 @@ class InteractingMultipleModel {
 
   /// Mixes, then crosses dt_s seconds in every mode. `failed` leaves all as it was.
   StepStatus predict(const Models& models, double dt_s) {
-    const BoundedMatrix Pi = models.chain.over(dt_s);
-    const BoundedVector c = Pi.transpose() * probabilities_;
+    const ModeMatrix Pi = models.chain.over(dt_s);
+    const ModeVector c = Pi.transpose() * probabilities_;
     std::array<AnyFilter, kMaxModes> mixed = filters_;
     for (Eigen::Index j = 0; j < size(); ++j) {
-      BoundedVector weights = Pi.col(j).cwiseProduct(probabilities_);
+      ModeVector weights = Pi.col(j).cwiseProduct(probabilities_);
       if (c[j] > 0.0)
         weights /= c[j];
       else
-        weights = BoundedVector::Unit(size(), j);  // a mode that cannot be entered keeps to itself
+        weights = ModeVector::Unit(size(), j);  // a mode that cannot be entered keeps to itself
       const StepStatus status =
           std::visit([&](auto& filter, const auto& mode) { return mix_and_predict(weights, filter, mode, dt_s); },
                      mixed[static_cast<std::size_t>(j)], models.modes[static_cast<std::size_t>(j)]);
@@ -93,7 +93,7 @@ class InteractingMultipleModel {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     std::array<Update<kStates, M>, kMaxModes> updates;
     std::array<AnyFilter, kMaxModes> updated = filters_;
-    BoundedVector log_weight(size());
+    ModeVector log_weight(size());
     for (Eigen::Index j = 0; j < size(); ++j) {
       auto& update = updates[static_cast<std::size_t>(j)];
       std::visit(
@@ -143,7 +143,7 @@ class InteractingMultipleModel {
     return total;
   }
   /// mu (r)
-  const BoundedVector& mode_probabilities() const { return probabilities_; }
+  const ModeVector& mode_probabilities() const { return probabilities_; }
 
  private:
   static constexpr std::size_t kMaxModes = Models::kMaxModes;
@@ -183,7 +183,7 @@ class InteractingMultipleModel {
 
   // Equations (11.6.6-8) to (-10): `filter` is mode j's own before, mixed and predicted after.
   template <typename Filter, typename ModeType>
-  StepStatus mix_and_predict(const BoundedVector& weights, Filter& filter, const ModeType& mode, double dt_s) const {
+  StepStatus mix_and_predict(const ModeVector& weights, Filter& filter, const ModeType& mode, double dt_s) const {
     if constexpr (!std::is_same_v<Filter, typename ModeType::Filter>) {
       return StepStatus::failed;  // modes and filters are made in the same order: this cannot be
     } else {
@@ -237,7 +237,7 @@ class InteractingMultipleModel {
   // nu, S and NIS of the mixture of the predictions of the modes that have not failed.
   template <int M>
   Update<kStates, M> mixture(const std::array<Update<kStates, M>, kMaxModes>& updates,
-                             const BoundedVector& log_weight) const {
+                             const ModeVector& log_weight) const {
     Update<kStates, M> combined;
     combined.nu.setZero();
     combined.S.setZero();
@@ -261,8 +261,8 @@ class InteractingMultipleModel {
   }
 
   std::array<AnyFilter, kMaxModes> filters_ = nothings(std::make_index_sequence<kMaxModes>{});
-  BoundedVector probabilities_;  // mu
-  BoundedVector predicted_;      // c of the last prediction
+  ModeVector probabilities_;  // mu
+  ModeVector predicted_;      // c of the last prediction
 };
 
 }  // namespace truebearing

@@ -10,17 +10,17 @@
 namespace truebearing {
 
 struct MarkovChain {
-  BoundedMatrix transition;  ///< Pi (r x r), rows sum to 1
-  BoundedVector initial;     ///< (r), sums to 1
-  double period_s = 1.0;     ///< that Pi belongs to, > 0
+  ModeMatrix transition;  ///< Pi (r x r), rows sum to 1
+  ModeVector initial;     ///< (r), sums to 1
+  double period_s = 1.0;  ///< that Pi belongs to, > 0
 
   int modes() const { return static_cast<int>(initial.size()); }
 
   /// Pi over dt_s. At another dt than the period a mode is kept with Pi_ii^(dt / period), the sojourn time that the
   /// chain has in continuous time, and left for the others in the proportions of Pi.
-  BoundedMatrix over(double dt_s) const {
+  ModeMatrix over(double dt_s) const {
     if (dt_s == period_s) return transition;
-    BoundedMatrix Pi = transition;
+    ModeMatrix Pi = transition;
     for (Eigen::Index i = 0; i < Pi.rows(); ++i) {
       const double stay = std::pow(transition(i, i), dt_s / period_s);
       const double leave = 1.0 - transition(i, i);
@@ -37,9 +37,9 @@ inline MarkovChain star_chain(int modes, double leave_first, double leave_other,
   const double others = modes - 1.0;
   MarkovChain chain;
   chain.period_s = period_s;
-  chain.initial = BoundedVector::Constant(modes, 1.0 / modes);
+  chain.initial = ModeVector::Constant(modes, 1.0 / modes);
   chain.transition =
-      BoundedMatrix::Constant(modes, modes, modes > 2 ? leave_other * (1.0 - to_first) / (others - 1.0) : 0.0);
+      ModeMatrix::Constant(modes, modes, modes > 2 ? leave_other * (1.0 - to_first) / (others - 1.0) : 0.0);
   chain.transition.row(0).setConstant(leave_first / others);
   chain.transition.col(0).setConstant(modes > 2 ? leave_other * to_first : leave_other);
   chain.transition.diagonal().setConstant(1.0 - leave_other);

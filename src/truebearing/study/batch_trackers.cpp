@@ -8,8 +8,8 @@
 namespace truebearing {
 namespace {
 
-BearingsOnlyBatchOptions read_own_method(TableReader& table) {
-  BearingsOnlyBatchOptions options;
+TargetMotionBatchOptions read_own_method(TableReader& table) {
+  TargetMotionBatchOptions options;
   options.start_grid = table.boolean_or("start_grid", false);
   if (table.has("start_ranges_m")) options.start_ranges_m = table.numbers("start_ranges_m", -1, {10.0, 1e6});
   if (options.start_ranges_m.empty() && !options.start_grid)
@@ -28,6 +28,20 @@ ChoOptions read_cho(TableReader& table, const std::string& method) {
   const std::string inverse = table.choice_or("inverse", {"cofactor", "cofactor_float", "pivoted"}, "cofactor");
   if (inverse == "cofactor_float") options.inverse = Inverse::cofactor_float;
   if (inverse == "pivoted") options.inverse = Inverse::pivoted;
+  return options;
+}
+
+FrequencyChangeOptions read_changes(TableReader& table) {
+  using Handling = FrequencyChangeOptions::Handling;
+  FrequencyChangeOptions options;
+  const std::string handling =
+      table.choice_or("frequency_changes", {"levels", "segments", "switch", "ignored"}, "levels");
+  if (handling == "segments") options.handling = Handling::segments;
+  if (handling == "switch") options.handling = Handling::bearings_only;
+  if (handling == "ignored") options.handling = Handling::ignored;
+  options.false_alarm_probability =
+      table.number_or("false_alarm_probability", options.false_alarm_probability, {1e-15, 0.5});
+  options.scan_threshold = table.number_or("scan_threshold", options.scan_threshold, kPositive);
   return options;
 }
 
@@ -54,9 +68,18 @@ std::unique_ptr<Tracker> make_bearings_batch(TableReader& table) {
   if (method == "map") options.prior = read_prior(table.table("prior"));
 
   TableReader measurement = table.table("measurement");
-  measurement.choice("model", {"bearing"});
+  const bool has_frequency = measurement.choice("model", {"bearing", "bearing_frequency"}) == "bearing_frequency";
+  if (has_frequency && std::holds_alternative<ChoOptions>(options.method))
+    throw measurement.error("model", "is \"bearing_frequency\" of method \"" + method + "\", which takes bearings only",
+                            "\"bearing\", or method \"ml\" or \"map\"");
   options.sigma_rad = radians(measurement.number("bearing_sigma_deg", {0.0, 90.0, true}));
   options.sigma_factor = measurement.number_or("sigma_factor", 1.0, kPositive);
+  if (has_frequency) {
+    BearingsBatchOptions::Frequency& frequency = options.frequency.emplace();
+    frequency.sigma_hz = measurement.number("frequency_sigma_hz", kPositive);
+    frequency.sound_mps = measurement.number_or("sound_mps", kSoundInWater_mps, kPositive);
+    frequency.changes = read_changes(table);
+  }
   measurement.finish();
 
   options.window_s = table.number_or("window_s", options.window_s, kPositive);

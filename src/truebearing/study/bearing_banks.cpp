@@ -6,16 +6,13 @@
 #include "truebearing/filter/modified_gain.hpp"
 #include "truebearing/filter/unscented.hpp"
 #include "truebearing/study/bearing_trackers.hpp"
-#include "truebearing/study/range_prior_configuration.hpp"
+#include "truebearing/study/range_bank_configuration.hpp"
 #include "truebearing/tracker/range_bank.hpp"
 
 namespace truebearing {
 
-std::unique_ptr<Tracker> make_range_bank(TableReader& table) {
+RangeHypotheses read_range_hypotheses(TableReader& table) {
   constexpr int kMost = 10000;
-  table.choice_or("space", {"plane"}, "plane");
-  const VelocityMotion motion = read_velocity_motion(table);
-  const BearingSensor sensor = read_bearing_sensor(table);
   RangeHypotheses hypotheses{read_range_prior(table.table("start"))};
   hypotheses.ranges = static_cast<int>(table.integer("ranges", 1, kMost));
   hypotheses.velocity_cells = static_cast<int>(table.integer_or("velocity_cells", 1, 1, 360));
@@ -33,6 +30,15 @@ std::unique_ptr<Tracker> make_range_bank(TableReader& table) {
   }
   if (hypotheses.size() > kMost)
     throw table.error("ranges", fmt::format("makes a bank of {}", hypotheses.size()), fmt::format("1 to {}", kMost));
+  return hypotheses;
+}
+
+std::unique_ptr<Tracker> make_range_bank(TableReader& table) {
+  if (measures_frequencies(table)) return make_frequency_range_bank(table);
+  table.choice_or("space", {"plane"}, "plane");
+  const VelocityMotion motion = read_velocity_motion(table);
+  const BearingSensor sensor = read_bearing_sensor(table);
+  const RangeHypotheses hypotheses = read_range_hypotheses(table);
   const std::string filter = table.choice("filter", {"kalman", "unscented", "log_polar", "modified_gain"});
   const auto make = [&]<typename Filter>(std::type_identity<Filter>) {
     return range_bank<Filter>(plane_space(), motion, sensor, hypotheses);

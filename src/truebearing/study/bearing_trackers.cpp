@@ -6,28 +6,15 @@
 #include "truebearing/filter/log_polar.hpp"
 #include "truebearing/filter/modified_gain.hpp"
 #include "truebearing/filter/unscented.hpp"
-#include "truebearing/study/range_prior_configuration.hpp"
 
 namespace truebearing {
 namespace {
-
-// start = { kind = "prior", ... } or { kind = "range", ... }.
-std::variant<PriorStart<4>, RangePrior> read_bearing_start(TableReader& tracker) {
-  TableReader table = tracker.table("start");
-  if (table.choice("kind", {"prior", "range"}) == "range") return read_range_prior(tracker.table("start"));
-  return std::get<PriorStart<4>>(read_start<4, 2>(tracker));
-}
 
 template <typename Filter>
 std::unique_ptr<Tracker> make(TableReader& table) {
   table.choice_or("space", {"plane"}, "plane");
   const VelocityMotion motion = read_velocity_motion(table);
-  const BearingSensor sensor = read_bearing_sensor(table);
-  const auto start = read_bearing_start(table);
-  const FilterTrackerOptions options = read_options(table, 1);
-  if (options.output_pull > 0.0) throw table.error("output_pull", "needs measured positions", "0");
-  return std::make_unique<FilterTracker<Filter, VelocityMotion, BearingSensor>>(plane_space(), motion, sensor, start,
-                                                                                options);
+  return bearing_tracker<Filter>(table, plane_space(), motion, read_bearing_sensor(table));
 }
 
 }  // namespace
@@ -36,11 +23,27 @@ bool measures_bearings(const TableReader& tracker) {
   return tracker.raw()["measurement"]["model"].value_or(std::string()) == "bearing";
 }
 
+bool measures_frequencies(const TableReader& tracker) {
+  return tracker.raw()["measurement"]["model"].value_or(std::string()) == "bearing_frequency";
+}
+
 BearingSensor read_bearing_sensor(TableReader& tracker) {
   TableReader table = tracker.table("measurement");
   table.choice("model", {"bearing"});
   const double sigma_rad = radians(table.number("bearing_sigma_deg", {0.0, 90.0, true}));
   const BearingSensor sensor{sigma_rad, table.number_or("sigma_factor", 1.0, kPositive)};
+  table.finish();
+  return sensor;
+}
+
+BearingFrequencySensor read_bearing_frequency_sensor(TableReader& tracker) {
+  TableReader table = tracker.table("measurement");
+  table.choice("model", {"bearing_frequency"});
+  BearingFrequencySensor sensor;
+  sensor.sigma_rad = radians(table.number("bearing_sigma_deg", {0.0, 90.0, true}));
+  sensor.sigma_hz = table.number("frequency_sigma_hz", kPositive);
+  sensor.sigma_factor = table.number_or("sigma_factor", 1.0, kPositive);
+  sensor.sound_mps = table.number_or("sound_mps", kSoundInWater_mps, kPositive);
   table.finish();
   return sensor;
 }
@@ -63,6 +66,7 @@ std::unique_ptr<Tracker> make_bearing_unscented(TableReader& table) {
 }
 
 std::unique_ptr<Tracker> make_modified_gain_tracker(TableReader& table) {
+  if (measures_frequencies(table)) return make_frequency_modified_gain(table);
   return make<ModifiedGainFilter<4>>(table);
 }
 

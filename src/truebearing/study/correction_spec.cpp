@@ -21,7 +21,7 @@ FeatureSpec read_feature(TableReader& table) {
     feature.scale_is_sigma = table.choice("scale", {"sigma"}) == "sigma";
   else if (needs.scale)
     feature.scale = table.number("scale", kPositive);
-  if (needs.mode) feature.mode = static_cast<int>(table.integer("mode", 1, kMaxDimension));
+  if (needs.mode) feature.mode = static_cast<int>(table.integer("mode", 1, kMaxModes));
   table.finish();
   return feature;
 }

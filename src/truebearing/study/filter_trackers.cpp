@@ -59,8 +59,9 @@ AnyNoise<N> scaled(const AnyNoise<N>& any, double factor) {
 }  // namespace
 
 std::unique_ptr<Tracker> make_kalman_tracker(TableReader& table) {
-  if (table.choice_or("space", {"line", "plane"}, "line") == "plane")
-    return measures_bearings(table) ? make_bearing_kalman(table) : make_plane_kalman(table);
+  if (measures_frequencies(table)) return make_frequency_kalman(table);
+  if (measures_bearings(table)) return make_bearing_kalman(table);
+  if (table.choice_or("space", {"line", "plane"}, "line") == "plane") return make_plane_kalman(table);
   const LineMotion motion = read_line_motion(table);
   const auto make = [&](auto form) -> std::unique_ptr<Tracker> {
     return std::make_unique<FilterTracker<KalmanFilter<2, decltype(form)>, LineMotion, PositionSensor<1>>>(
@@ -73,11 +74,15 @@ std::unique_ptr<Tracker> make_kalman_tracker(TableReader& table) {
 }
 
 std::unique_ptr<Tracker> make_unscented_tracker(TableReader& table) {
+  if (measures_frequencies(table)) return make_frequency_unscented(table);
+  if (measures_bearings(table)) return make_bearing_unscented(table);
   table.choice("space", {"plane"});
-  return measures_bearings(table) ? make_bearing_unscented(table) : make_plane_unscented(table);
+  return make_plane_unscented(table);
 }
 
 std::unique_ptr<Tracker> make_multiple_model_tracker(TableReader& table) {
+  if (measures_frequencies(table)) return make_frequency_multiple_model(table);
+  if (measures_bearings(table)) return make_bearing_multiple_model(table);
   table.choice("space", {"plane"});
   return make_interacting_multiple_model(table);
 }

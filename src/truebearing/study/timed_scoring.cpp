@@ -15,6 +15,9 @@ TargetMotionBound read_bound(TableReader table) {
   bound.q_m2ps3 = table.number_or("q_m2ps3", 0.0, kNonNegative);
   if (table.has("bearing_sigma_deg"))
     bound.bearing_sigma_rad = radians(table.number("bearing_sigma_deg", {0.0, 90.0, true}));
+  bound.frequencies = table.boolean_or("frequencies", true);
+  if (table.has("frequency_sigma_hz")) bound.frequency_sigma_hz = table.number("frequency_sigma_hz", kPositive);
+  bound.sound_mps = table.number_or("sound_mps", kSoundInWater_mps, kPositive);
   if (table.has("prior")) bound.prior = read_range_prior(table.table("prior"));
   table.finish();
   return bound;
@@ -33,7 +36,7 @@ TimedScoring read_timed_scoring(TableReader& scoring, const StateSpace& truth, S
   if (scoring.has("global_minimum")) timed.global_minimum = scoring.text("global_minimum");
   if (auto bound = scoring.table_if_present("bound")) timed.cramer_rao = read_bound(std::move(*bound));
   for (const char* key : {"target_motion", "bound"})
-    if (scoring.has(key) && truth != plane_space())
+    if (scoring.has(key) && !begins_in_plane(truth))
       throw scoring.error(key, "is of a target in the plane, and the scenario's truth is " + truth.name);
   for (const char* key : {"target_motion", "global_minimum", "bound"})
     if (scoring.has(key) && rule.times_s.empty())

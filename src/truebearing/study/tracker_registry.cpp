@@ -9,6 +9,7 @@
 #include "truebearing/study/batch_trackers.hpp"
 #include "truebearing/study/bearing_trackers.hpp"
 #include "truebearing/study/filter_trackers.hpp"
+#include "truebearing/study/passive_sonar_configuration.hpp"
 
 namespace truebearing {
 namespace {
@@ -24,6 +25,7 @@ struct Registry {
       {"raw", make_raw_tracker},
       {"recorded", make_recorded_tracker},
       {"modified_gain", make_modified_gain_tracker},
+      {"passive_sonar", make_passive_sonar_tracker},
       {"log_polar", make_log_polar_tracker},
       {"range_bank", make_range_bank},
   };

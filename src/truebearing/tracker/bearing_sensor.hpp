@@ -1,10 +1,15 @@
 // A sensor of bearings, as the FilterTracker wants it: where the measurement says that its sensor was, at the origin
-// and at rest where it does not say. The measurement's own standard deviation holds where it carries one, else the
-// sensor's; either is multiplied by sigma_factor.
+// and at rest where it does not say. A frequency behind the bearing is left alone. The measurement's own standard
+// deviation holds where it carries one, else the sensor's; either is multiplied by sigma_factor.
 #pragma once
+
+#include <cmath>
+#include <optional>
 
 #include "truebearing/measurement/bearing.hpp"
 #include "truebearing/measurement/measurement.hpp"
+#include "truebearing/tma/range_prior.hpp"
+#include "truebearing/tracker/start.hpp"
 
 namespace truebearing {
 
@@ -17,10 +22,17 @@ struct BearingSensor {
 
   Model model(const Measurement& measurement) const {
     const SensorState sensor = measurement.sensor.value_or(SensorState{});
-    const double sigma = measurement.sigma.size() == 1 ? measurement.sigma[0] : sigma_rad;
+    const double sigma = measurement.sigma.size() > 0 ? measurement.sigma[0] : sigma_rad;
     return {sensor.position_m, sensor.velocity_mps, sigma_factor * sigma};
   }
-  Model::Vector value(const Measurement& measurement) const { return measurement.z; }
+  bool has_value(const Measurement& measurement) const {
+    return (measurement.z.size() == 1 || measurement.z.size() == 2) && std::isfinite(measurement.z[0]);
+  }
+  Model::Vector value(const Measurement& measurement) const { return measurement.z.head<1>(); }
+  /// What is believed of the plane is all that it needs.
+  std::optional<PriorStart<4>> start(const GaussianState& plane, const Measurement&) const {
+    return PriorStart<4>{plane.x, plane.P};
+  }
 };
 
 }  // namespace truebearing

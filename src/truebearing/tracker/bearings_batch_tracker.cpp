@@ -1,6 +1,8 @@
 #include "truebearing/tracker/bearings_batch_tracker.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "truebearing/tma/residual_checks.hpp"
@@ -9,31 +11,41 @@ namespace truebearing {
 namespace {
 
 constexpr std::size_t kReserved = 2048;  // bearings: beyond them a growing window allocates
+constexpr std::size_t kEvents = 64;
+constexpr double kUnheard_hz = 1e4;  // standard deviation of the f0 of a source that was not heard yet
 
-BearingsOnlyBatchOptions solver_options(const BearingsBatchOptions& options) {
-  const auto* own = std::get_if<BearingsOnlyBatchOptions>(&options.method);
-  return own ? *own : BearingsOnlyBatchOptions{};
+TargetMotionBatchOptions solver_options(const BearingsBatchOptions& options) {
+  const auto* own = std::get_if<TargetMotionBatchOptions>(&options.method);
+  return own ? *own : TargetMotionBatchOptions{};
 }
 
 }  // namespace
 
 BearingsBatchTracker::BearingsBatchTracker(BearingsBatchOptions options)
-    : options_(std::move(options)), solver_(solver_options(options_)) {
+    : options_(std::move(options)),
+      solver_(solver_options(options_)),
+      frequency_solver_(options_.frequency ? options_.frequency->changes : FrequencyChangeOptions{}),
+      frequencies_(options_.frequency ? options_.frequency->sound_mps : kSoundInWater_mps) {
   window_.reserve(kReserved);
+  if (options_.frequency) frequencies_.reserve(kReserved);
+  events_.reserve(kEvents);
   reset();
 }
 
 void BearingsBatchTracker::reset() {
   guard_ = {};
   window_.clear();
+  frequencies_.clear();
   guess_.reset();
   prior_.reset();
   estimate_ = {};
-  manoeuvres_s_.clear();
+  source_ = {};
+  range_known_ = false;
+  events_.clear();
   solved_ = 0;
   due_s_ = -std::numeric_limits<double>::infinity();
   record_ = {};
-  record_.space = &plane_space();
+  record_.space = &space();
 }
 
 // The prior of this track, where guess and options make one.
@@ -53,11 +65,22 @@ void BearingsBatchTracker::believe(const Measurement& first, double sigma_rad, c
 
 void BearingsBatchTracker::add(const Measurement& measurement) {
   const SensorState sensor = measurement.sensor.value_or(SensorState{});
-  const double sigma_rad =
-      options_.sigma_factor * (measurement.sigma.size() > 0 ? measurement.sigma[0] : options_.sigma_rad);
-  if (options_.prior && !prior_) believe(measurement, sigma_rad, sensor);
-  window_.add(measurement.time_s, measurement.z[0], sigma_rad, sensor.position_m);
+  const auto sigma = [&](Eigen::Index i, double otherwise) {
+    return options_.sigma_factor * (measurement.sigma.size() > i ? measurement.sigma[i] : otherwise);
+  };
+  if (std::isfinite(measurement.z[0])) {
+    const double sigma_rad = sigma(0, options_.sigma_rad);
+    if (options_.prior && !prior_) believe(measurement, sigma_rad, sensor);
+    window_.add(measurement.time_s, measurement.z[0], sigma_rad, sensor.position_m);
+  }
+  if (has_frequency(measurement))
+    frequencies_.add(measurement.time_s, measurement.z[1], sigma(1, options_.frequency->sigma_hz), sensor);
   window_.drop_before(measurement.time_s - options_.window_s);
+  frequencies_.drop_before(measurement.time_s - options_.window_s);
+}
+
+bool BearingsBatchTracker::has_frequency(const Measurement& measurement) const {
+  return options_.frequency && measurement.z.size() == 2 && std::isfinite(measurement.z[1]);
 }
 
 bool BearingsBatchTracker::is_due(double time_s) {
@@ -78,28 +101,58 @@ BatchEstimate BearingsBatchTracker::solve() {
   if (const auto* cho = std::get_if<ChoOptions>(&options_.method)) return solve_cho(window_, *cho);
   Eigen::Vector4d warm = estimate_.x;
   warm.head<2>() += (window_.last_time_s() - estimate_.time_s) * warm.tail<2>();
-  return solver_.solve(window_, prior_, options_.warm_start && estimate_.found ? &warm : nullptr);
+  const Eigen::Vector4d* start = options_.warm_start && estimate_.found ? &warm : nullptr;
+  if (!options_.frequency) return solver_.solve(window_, prior_, start);
+  return frequency_solver_.solve(solver_, window_, frequencies_, prior_, start);
+}
+
+void BearingsBatchTracker::take(const BatchEstimate& estimate) {
+  estimate_ = estimate;
+  if (!options_.frequency) return;
+  source_ = {};
+  if (frequencies_.size() == 0)
+    source_.variance = kUnheard_hz * kUnheard_hz;
+  else
+    source_ = frequencies_.source(frequency_solver_.last_level(), estimate.x, estimate.time_s);
+}
+
+// Each change once, though later solutions may place it a few frequencies from where the first did.
+void BearingsBatchTracker::report_changes() {
+  constexpr double kSamePlace = 5.0;
+  if (frequencies_.size() < 2) return;
+  const double length_s = frequencies_.time_s(frequencies_.size() - 1) - frequencies_.time_s(0);
+  const double near_s = kSamePlace * length_s / static_cast<double>(frequencies_.size() - 1);
+  for (const FrequencyChange& change : frequency_solver_.changes()) {
+    const auto is_it = [&](const TrackEvent& event) {
+      return event.kind == TrackEvent::Kind::source_changed && std::abs(event.time_s - change.time_s) <= near_s;
+    };
+    if (std::none_of(events_.begin(), events_.end(), is_it))
+      events_.push_back({TrackEvent::Kind::source_changed, change.time_s, change.frequency_hz});
+  }
 }
 
 // What came after the change is one course and speed again.
 void BearingsBatchTracker::cut_at_manoeuvre() {
   constexpr std::size_t kFewest = 5;
   if (window_.size() < kFewest || !solver_.observability().observable()) return;
-  const ResidualChecks checks = check_residuals(window_, estimate_);
+  const bool heard = options_.frequency && frequency_solver_.used_frequencies();
+  const ResidualChecks checks = check_residuals(window_, estimate_, heard ? &frequencies_ : nullptr);
   if (!checks.manoeuvred) return;
-  manoeuvres_s_.push_back(checks.manoeuvre_s);
+  events_.push_back({TrackEvent::Kind::turn_began, checks.manoeuvre_s});
   window_.drop_before(checks.manoeuvre_s);
+  frequencies_.drop_before(checks.manoeuvre_s);
 }
 
 std::span<const StepRecord> BearingsBatchTracker::step(const Measurement& measurement) {
-  const StreamGuard::Verdict verdict = guard_.examine(measurement);
+  const bool has_bearing = (measurement.z.size() == 1 || measurement.z.size() == 2) && std::isfinite(measurement.z[0]);
+  const StreamGuard::Verdict verdict = guard_.examine(measurement, has_bearing || has_frequency(measurement));
   record_.batch.reset();
   if (verdict == StreamGuard::Verdict::repeated || verdict == StreamGuard::Verdict::out_of_order) {
     record_.status = StepStatus::rejected;
     return estimate_.found ? std::span<const StepRecord>(&record_, 1) : std::span<const StepRecord>();
   }
   if (measurement.guess) guess_ = measurement.guess;
-  if (verdict == StreamGuard::Verdict::usable && measurement.z.size() == 1) add(measurement);
+  if (verdict == StreamGuard::Verdict::usable) add(measurement);
 
   record_.status = StepStatus::coasted;
   if (is_due(measurement.time_s)) {
@@ -107,10 +160,13 @@ std::span<const StepRecord> BearingsBatchTracker::step(const Measurement& measur
     if (estimate.starts > 0)
       record_.batch = BatchOutcome{estimate.cost, estimate.iterations, estimate.starts, estimate.non_finite_starts};
     if (estimate.found) {
-      estimate_ = estimate;
-      const bool judged = std::holds_alternative<BearingsOnlyBatchOptions>(options_.method);
-      const bool open = judged && !prior_ && !solver_.observability().observable();
-      record_.status = open ? StepStatus::unobservable : StepStatus::ok;
+      take(estimate);
+      const bool judged = std::holds_alternative<TargetMotionBatchOptions>(options_.method);
+      const bool known = judged && solver_.observability().observable();
+      record_.status = known || !judged || prior_ ? StepStatus::ok : StepStatus::unobservable;
+      if (known && !range_known_) events_.push_back({TrackEvent::Kind::range_known, measurement.time_s});
+      range_known_ = range_known_ || known;
+      if (options_.frequency) report_changes();
       if (judged && options_.cut_at_manoeuvres) cut_at_manoeuvre();
     } else if (estimate.starts > 0) {
       ++guard_.counts.failed;
@@ -122,9 +178,18 @@ std::span<const StepRecord> BearingsBatchTracker::step(const Measurement& measur
   record_.sensor = measurement.sensor;
   Eigen::Vector4d x = estimate_.x;
   Eigen::Matrix4d P = estimate_.P;
-  carry(measurement.time_s - estimate_.time_s, x, P);
+  const double t = measurement.time_s - estimate_.time_s;
+  carry(t, x, P);
   record_.x = x;
   record_.P = P;
+  if (options_.frequency) {
+    // The f0 depends on the state as it was.
+    SourceFrequency source = source_;
+    source.per_state.tail<2>() -= t * source.per_state.head<2>();
+    record_.x.conservativeResize(5);
+    record_.x[4] = source.frequency_hz;
+    record_.P = covariance_with(P, source);
+  }
   return {&record_, 1};
 }
 

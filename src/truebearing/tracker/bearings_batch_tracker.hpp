@@ -1,6 +1,10 @@
-// Batch target-motion analysis as a Tracker: bearings are collected in a growing or sliding window, and the estimate is
-// made afresh from all of them. Between solutions, and while bearings are missing, the last one is carried on at
-// constant velocity (`coasted`). Where the geometry does not determine the range its records say `unobservable`.
+// Batch target-motion analysis as a Tracker: bearings, and frequencies where they are configured, are collected in a
+// growing or sliding window, and the estimate is made afresh from all of them. Between solutions, and while nothing is
+// measured, the last one is carried on at constant velocity (`coasted`). Where the geometry does not determine the
+// range its records say `unobservable`.
+//
+// z = [bearing] or [bearing, frequency]; of two either may be missing. With frequencies the state has a fifth
+// component, the f0 that the source has at the end of the window.
 #pragma once
 
 #include <limits>
@@ -8,8 +12,9 @@
 #include <variant>
 #include <vector>
 
-#include "truebearing/tma/bearings_only_batch.hpp"
+#include "truebearing/tma/target_motion_batch.hpp"
 #include "truebearing/tma/cho_2015.hpp"
+#include "truebearing/tma/frequency_changes.hpp"
 #include "truebearing/tma/range_prior.hpp"
 #include "truebearing/tracker/stream_guard.hpp"
 #include "truebearing/tracker/tracker.hpp"
@@ -17,12 +22,19 @@
 namespace truebearing {
 
 struct BearingsBatchOptions {
-  std::variant<BearingsOnlyBatchOptions, ChoOptions> method;
+  std::variant<TargetMotionBatchOptions, ChoOptions> method;
   /// Maximum a posteriori instead of maximum likelihood; a range_m of 0: of the velocity only. Without a guess that
   /// it needs nothing is solved.
   std::optional<RangePrior> prior;
-  double sigma_rad = 0.0;  ///< where a measurement carries none
-  double sigma_factor = 1.0;
+  double sigma_rad = 0.0;     ///< where a measurement carries none
+  double sigma_factor = 1.0;  ///< of bearings and frequencies
+  /// The use of frequencies, not with Cho's methods. Own ship's velocity has to come with each.
+  struct Frequency {
+    double sigma_hz = 0.0;  ///< where a measurement carries none
+    double sound_mps = kSoundInWater_mps;
+    FrequencyChangeOptions changes;
+  };
+  std::optional<Frequency> frequency;
   double window_s = std::numeric_limits<double>::infinity();
   /// Solve at the first step at or after each of these; else every so many seconds, 0: at every step.
   std::vector<double> solve_at_s;
@@ -40,27 +52,37 @@ class BearingsBatchTracker final : public Tracker {
   std::span<const StepRecord> step(const Measurement& measurement) override;
   void reset() override;
   std::unique_ptr<Tracker> clone() const override { return std::make_unique<BearingsBatchTracker>(options_); }
-  const StateSpace& space() const override { return plane_space(); }
+  const StateSpace& space() const override { return options_.frequency ? plane_frequency_space() : plane_space(); }
   TrackerCounts counts() const override { return guard_.counts; }
 
-  /// Times at which a change of velocity was noticed since reset(), where the options ask for it.
-  const std::vector<double>& manoeuvres_s() const { return manoeuvres_s_; }
+  /// The first range_known; of the source, source_changed; where the options cut at manoeuvres, turn_began.
+  std::span<const TrackEvent> events() const override { return events_; }
+
+  /// The last estimate that was found, at its own time.
+  const BatchEstimate& estimate() const { return estimate_; }
 
  private:
   void believe(const Measurement& first, double sigma_rad, const SensorState& sensor);
   void add(const Measurement& measurement);
+  bool has_frequency(const Measurement& measurement) const;
   bool is_due(double time_s);
   BatchEstimate solve();
+  void take(const BatchEstimate& estimate);
   void cut_at_manoeuvre();
+  void report_changes();
 
   BearingsBatchOptions options_;
-  BearingsOnlyBatch solver_;
+  TargetMotionBatch solver_;
+  FrequencyChangeBatch frequency_solver_;
   StreamGuard guard_;
   BearingWindow window_;
+  DopplerWindow frequencies_;
   std::optional<TargetGuess> guess_;
   std::optional<BatchPrior> prior_;  // of the track, from its first bearing
   BatchEstimate estimate_;           // the last that was found
-  std::vector<double> manoeuvres_s_;
+  SourceFrequency source_;           // at the end of its window
+  bool range_known_ = false;
+  std::vector<TrackEvent> events_;
   std::size_t solved_ = 0;  // of solve_at_s
   double due_s_ = -std::numeric_limits<double>::infinity();
   StepRecord record_;

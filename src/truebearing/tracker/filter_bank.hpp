@@ -24,7 +24,6 @@ template <typename Filter, typename Motion, typename Sensor>
 class FilterBank final : public Tracker {
  public:
   static constexpr int kStates = Motion::kStates;
-  static constexpr int kMeasurements = Sensor::Model::kMeasurements;
 
   struct Hypothesis {
     Filter start;  ///< the prior, which belongs to time start_time_s, or to that of the first usable measurement
@@ -48,12 +47,13 @@ class FilterBank final : public Tracker {
   }
 
   std::span<const StepRecord> step(const Measurement& measurement) override {
-    const StreamGuard::Verdict verdict = guard_.examine(measurement);
+    const StreamGuard::Verdict verdict =
+        guard_.examine(measurement, has_value(hypotheses_.front().sensor, measurement));
     if (verdict == StreamGuard::Verdict::repeated || verdict == StreamGuard::Verdict::out_of_order) {
       record_.status = StepStatus::rejected;
       return record_.x.size() == 0 ? std::span<const StepRecord>() : std::span<const StepRecord>(&record_, 1);
     }
-    const bool usable = verdict == StreamGuard::Verdict::usable && measurement.z.size() == kMeasurements;
+    const bool usable = verdict == StreamGuard::Verdict::usable;
     if (measurement.guess) guess_ = measurement.guess;
     record_.time_s = measurement.time_s;
     record_.sensor = measurement.sensor;

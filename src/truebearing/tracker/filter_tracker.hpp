@@ -10,12 +10,12 @@
 #include <utility>
 #include <variant>
 
-#include "truebearing/measurement/bearing.hpp"
 #include "truebearing/measurement/longer_state.hpp"
 #include "truebearing/tma/range_prior.hpp"
 #include "truebearing/tracker/gate.hpp"
 #include "truebearing/tracker/start.hpp"
 #include "truebearing/tracker/stream_guard.hpp"
+#include "truebearing/tracker/successor.hpp"
 #include "truebearing/tracker/tracker.hpp"
 
 namespace truebearing {
@@ -35,14 +35,17 @@ struct FilterTrackerOptions {
 /// `Vector value(const Measurement&) const` what that model calls z. A filter of more components than `space` has is
 /// published without the last of them.
 template <typename Filter, typename Motion, typename Sensor>
-class FilterTracker final : public Tracker {
+class FilterTracker final : public Successor {
  public:
   static constexpr int kStates = Motion::kStates;
   static constexpr int kMeasurements = Sensor::Model::kMeasurements;
   using Prior = PriorStart<kStates>;
   /// Bearings tell no position: their tracks begin with the first of them and what is believed of the range.
-  static constexpr bool kMeasuresBearings = std::is_same_v<typename Sensor::Model, Bearing<>>;
-  using Start = std::conditional_t<kMeasuresBearings, std::variant<Prior, RangePrior>,
+  static constexpr bool kMeasuresBearings =
+      requires(const Sensor& sensor, const GaussianState& plane, const Measurement& measurement) {
+    sensor.start(plane, measurement);
+  };
+  using Start = std::conditional_t<kMeasuresBearings, std::variant<Prior, RangePrior, HandOverStart>,
                                    std::variant<Prior, TwoPointStart, OnePointStart>>;
 
   FilterTracker(const StateSpace& space, Motion motion, Sensor sensor, Start start, FilterTrackerOptions options = {})
@@ -55,8 +58,8 @@ class FilterTracker final : public Tracker {
   }
 
   std::span<const StepRecord> step(const Measurement& measurement) override {
-    const StreamGuard::Verdict verdict = guard_.examine(measurement);
-    const bool usable = verdict == StreamGuard::Verdict::usable && measurement.z.size() == kMeasurements;
+    const StreamGuard::Verdict verdict = guard_.examine(measurement, has_value(sensor_, measurement));
+    const bool usable = verdict == StreamGuard::Verdict::usable;
     if (verdict == StreamGuard::Verdict::repeated || verdict == StreamGuard::Verdict::out_of_order) return refuse();
     if constexpr (kMeasuresBearings)
       if (measurement.guess) guess_ = measurement.guess;
@@ -87,6 +90,19 @@ class FilterTracker final : public Tracker {
     record_.track = -1;
     guess_.reset();
     restart(std::holds_alternative<Prior>(start_) ? std::get<Prior>(start_).time_s : 0.0);
+  }
+
+  void take_over(double time_s, const BoundedVector& x, const BoundedMatrix& P) override {
+    double rest_sigma = 0.0;
+    if constexpr (kMeasuresBearings)
+      if (const auto* hand_over = std::get_if<HandOverStart>(&start_)) rest_sigma = hand_over->rest_sigma;
+    Prior start{State::Zero(), Covariance::Zero(), time_s};
+    start.P.diagonal().setConstant(rest_sigma * rest_sigma);
+    start.x.head(x.size()) = x;
+    start.P.topLeftCorner(P.rows(), P.cols()) = P;
+    begin(start.x, start.P);
+    pending_.reset();
+    filter_time_s_ = time_s;
   }
 
   std::unique_ptr<Tracker> clone() const override {
@@ -131,9 +147,11 @@ class FilterTracker final : public Tracker {
       const auto* prior = std::get_if<RangePrior>(&start_);
       if (!prior || !prior->suffices_with(guess_)) return {};
       const auto model = sensor_.model(measurement);
-      const GaussianState start =
+      const GaussianState plane =
           prior->state(sensor_.value(measurement)[0], model.sigma_rad, {model.site_m, model.site_velocity_mps}, guess_);
-      return begin_from(measurement, lengthened<kStates>(start.x, start.P, 0.0));
+      const auto start = sensor_.start(plane, measurement);
+      if (!start) return {};
+      return begin_from(measurement, lengthened<kStates>(start->x, start->P, 0.0));
     } else if constexpr (2 * kMeasurements <= kStates) {
       const auto R = sensor_.model(measurement).R();
       if (const auto* one_point = std::get_if<OnePointStart>(&start_)) {

@@ -20,6 +20,11 @@ struct OnePointStart {
   double rest_sigma = 0.0;          ///< of each component behind the velocities, which begin at 0
 };
 
+/// From another tracker's estimate (successor.hpp), and not before.
+struct HandOverStart {
+  double rest_sigma = 0.0;  ///< of each component that the other does not have; they begin at 0
+};
+
 /// Two-point differencing (Bar-Shalom, Li and Kirubarajan 2001, sec. 5.5.3) of measured positions z1, z2 (d), dt apart,
 /// for states [position (d), velocity (d)]: x = [z2, (z2 - z1) / dt], P = [R2, R2/dt; R2/dt, (R1 + R2)/dt^2].
 struct TwoPointStart {

@@ -37,7 +37,7 @@ struct CorrectionOutcome {
 
 /// How a batch estimator came to its estimate (tma/).
 struct BatchOutcome {
-  double cost = 0.0;  ///< 1/2 sum of squared normalised residuals at the estimate, without a prior's share
+  double cost = 0.0;   ///< 1/2 sum of squared normalised residuals at the estimate, without a prior's share
   int iterations = 0;  ///< of the start that won
   int starts = 0;
   int non_finite_starts = 0;  ///< of them, those that ended in numbers that are not finite
@@ -53,8 +53,8 @@ struct StepRecord {
 
   std::optional<Prediction> prediction;
   std::optional<Innovation> innovation;
-  std::optional<BoundedMatrix> gain;                ///< K (n x m)
-  std::optional<BoundedVector> mode_probabilities;  ///< of a multiple-model tracker
+  std::optional<BoundedMatrix> gain;             ///< K (n x m)
+  std::optional<ModeVector> mode_probabilities;  ///< of a multiple-model tracker
   std::optional<SensorState> sensor;
   std::optional<CorrectionOutcome> correction;  ///< of a corrected tracker
   std::optional<BatchOutcome> batch;            ///< of a batch estimator, at steps at which it solved

@@ -9,6 +9,15 @@
 
 namespace truebearing {
 
+/// True where the sensor's model can use the measurement, or a part of it.
+template <typename Sensor>
+bool has_value(const Sensor& sensor, const Measurement& measurement) {
+  if constexpr (requires { sensor.has_value(measurement); })
+    return sensor.has_value(measurement);
+  else
+    return !measurement.is_missing() && measurement.z.size() == Sensor::Model::kMeasurements;
+}
+
 class StreamGuard {
  public:
   enum class Verdict {
@@ -18,18 +27,19 @@ class StreamGuard {
     out_of_order  ///< earlier than the measurement before, or its time is not finite: leave the state alone
   };
 
-  Verdict examine(const Measurement& measurement) {
+  /// `usable` of a sensor that can do with a part of z.
+  Verdict examine(const Measurement& measurement) { return examine(measurement, !measurement.is_missing()); }
+  Verdict examine(const Measurement& measurement, bool usable) {
     if (!std::isfinite(measurement.time_s) || (started_ && measurement.time_s < time_s_)) {
       ++counts.out_of_order;
       return Verdict::out_of_order;
     }
-    if (measurement.is_missing()) {
+    if (!usable) {
       ++counts.missing;
       advance(measurement.time_s);
       return Verdict::missing;
     }
-    if (started_ && measurement.time_s == time_s_ && last_z_.size() == measurement.z.size() &&
-        last_z_ == measurement.z) {
+    if (started_ && measurement.time_s == time_s_ && is_last(measurement.z)) {
       ++counts.repeated;
       return Verdict::repeated;
     }
@@ -41,6 +51,13 @@ class StreamGuard {
   TrackerCounts counts;
 
  private:
+  bool is_last(const BoundedVector& z) const {
+    if (z.size() != last_z_.size()) return false;
+    for (Eigen::Index i = 0; i < z.size(); ++i)
+      if (z[i] != last_z_[i] && !(std::isnan(z[i]) && std::isnan(last_z_[i]))) return false;
+    return true;
+  }
+
   void advance(double time_s) {
     time_s_ = time_s;
     started_ = true;

@@ -1,8 +1,10 @@
 // Tracker: the run-time interface of every estimator in the house, one virtual call per measurement.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <span>
+#include <string_view>
 
 #include "truebearing/measurement/measurement.hpp"
 #include "truebearing/tracker/step_record.hpp"
@@ -27,6 +29,36 @@ struct RecordBlocks {
   bool measures_position = false;  ///< the innovation's z is the position, the first half of the state
 };
 
+/// Something that a tracker noticed, beside its estimates.
+struct TrackEvent {
+  enum class Kind : unsigned char {
+    range_known,     ///< the measurements determine the target's range from here on
+    handed_over,     ///< a batch estimate began a filter
+    source_changed,  ///< the target's frequency jumped; `value`: to so many Hz
+    turn_began,      ///< the target left its course or speed
+    turn_ended
+  };
+  Kind kind;
+  double time_s;  ///< of the event itself, at or before the step that noticed it
+  double value = std::numeric_limits<double>::quiet_NaN();
+};
+
+constexpr std::string_view to_string(TrackEvent::Kind kind) {
+  switch (kind) {
+    case TrackEvent::Kind::range_known:
+      return "range_known";
+    case TrackEvent::Kind::handed_over:
+      return "handed_over";
+    case TrackEvent::Kind::source_changed:
+      return "source_changed";
+    case TrackEvent::Kind::turn_began:
+      return "turn_began";
+    case TrackEvent::Kind::turn_ended:
+      return "turn_ended";
+  }
+  return "unknown";
+}
+
 class Tracker {
  public:
   virtual ~Tracker() = default;
@@ -48,6 +80,9 @@ class Tracker {
   virtual RecordBlocks blocks() const { return {}; }
 
   virtual TrackerCounts counts() const { return {}; }
+
+  /// What it noticed since reset(), in the order in which it did.
+  virtual std::span<const TrackEvent> events() const { return {}; }
 
  protected:
   Tracker() = default;

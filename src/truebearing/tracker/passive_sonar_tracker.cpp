@@ -1,0 +1,166 @@
+#include "truebearing/tracker/passive_sonar_tracker.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace truebearing {
+namespace {
+
+constexpr std::size_t kReservedEvents = 64;  // beyond them the list allocates
+
+// As the filter publishes it: without the frequency where its space has none.
+void cut(const StepRecord& batch, const StateSpace& space, StepRecord& record) {
+  record = batch;
+  record.space = &space;
+  const Eigen::Index n = space.size();
+  if (record.x.size() <= n) return;
+  record.x.conservativeResize(n);
+  record.P.conservativeResize(n, n);
+}
+
+}  // namespace
+
+PassiveSonarTracker::PassiveSonarTracker(PassiveSonarOptions options, std::unique_ptr<Tracker> batch,
+                                         std::unique_ptr<Successor> filter)
+    : options_(std::move(options)), batch_(std::move(batch)), filter_(std::move(filter)) {
+  events_.reserve(kReservedEvents);
+}
+
+void PassiveSonarTracker::reset() {
+  batch_->reset();
+  filter_->reset();
+  following_ = turning_ = false;
+  events_.clear();
+  record_ = {};
+  last_.reset();
+  doubtful_.reset();
+}
+
+std::unique_ptr<Tracker> PassiveSonarTracker::clone() const {
+  std::unique_ptr<Tracker> filter = filter_->clone();
+  return std::make_unique<PassiveSonarTracker>(options_, batch_->clone(),
+                                               std::unique_ptr<Successor>(dynamic_cast<Successor*>(filter.release())));
+}
+
+std::span<const StepRecord> PassiveSonarTracker::step(const Measurement& measurement) {
+  return following_ ? follow(measurement) : collect(measurement);
+}
+
+TrackerCounts PassiveSonarTracker::sum_of_counts() const {
+  TrackerCounts sum = batch_->counts();
+  const TrackerCounts more = filter_->counts();
+  sum.missing += more.missing;
+  sum.repeated += more.repeated;
+  sum.out_of_order += more.out_of_order;
+  sum.gated += more.gated;
+  sum.failed += more.failed;
+  return sum;
+}
+
+// Only where the batch was solved at this very step, and says that it knows the range.
+bool PassiveSonarTracker::is_good_enough(const StepRecord& record) const {
+  constexpr double kRounding_s = 1e-6;
+  if (record.status != StepStatus::ok || record.time_s < options_.hand_over_s - kRounding_s) return false;
+  const Eigen::Vector2d offset_m = record.x.head<2>() - record.sensor.value_or(SensorState{}).position_m;
+  const double range_m = offset_m.norm();
+  const Eigen::Vector2d u = offset_m / range_m;
+  const double sigma_m = std::sqrt(u.dot(record.P.topLeftCorner<2, 2>() * u));
+  return 100.0 * sigma_m <= options_.hand_over_percent * range_m;
+}
+
+std::span<const StepRecord> PassiveSonarTracker::collect(const Measurement& measurement) {
+  const std::span<const StepRecord> records = batch_->step(measurement);
+  // The batch may come to another view of the past with every solution: its list replaces what it said before.
+  events_.assign(batch_->events().begin(), batch_->events().end());
+  if (records.empty()) return {};
+  const StepRecord& record = records.front();
+  cut(record, space(), record_);
+  remember(record);
+  if (const auto now = heard(measurement)) last_ = now;
+  if (is_good_enough(record)) {
+    filter_->take_over(record.time_s, record.x, record.P);
+    following_ = true;
+    events_.push_back({TrackEvent::Kind::handed_over, record.time_s});
+  } else if (!options_.show_batch) {
+    return {};
+  }
+  return {&record_, 1};
+}
+
+void PassiveSonarTracker::remember(const StepRecord& record) {
+  plane_ = {record.x.head<4>(), record.P.topLeftCorner<4, 4>()};
+  plane_s_ = record.time_s;
+}
+
+// f / (1 - v_r / c) with the last estimate carried to the measurement's time, so that neither own ship's manoeuvres nor
+// the turning line of sight look like changes of the source.
+std::optional<PassiveSonarTracker::Heard> PassiveSonarTracker::heard(const Measurement& measurement) const {
+  if (measurement.z.size() != 2 || !std::isfinite(measurement.z[1])) return std::nullopt;
+  BearingFrequency<>::State unit;
+  unit << plane_.x, 1.0;
+  unit.head<2>() += (measurement.time_s - plane_s_) * plane_.x.tail<2>();
+  return Heard{measurement.time_s, measurement.z[1] / options_.sensor.model(measurement).h(unit)(1)};
+}
+
+// A frequency that differs from the last one is either an outlier or a change. The next one tells: where it goes with
+// the newcomer, the source has changed; else the newcomer is forgotten (equation 6).
+PassiveSonarTracker::Source PassiveSonarTracker::watch_source(const Measurement& measurement) {
+  const std::optional<Heard> now = heard(measurement);
+  if (!now) return Source::steady;
+  const double by_chance_hz = options_.gamma * std::numbers::sqrt2 * options_.sensor.model(measurement).sigma_hz;
+  const double by_turning_hz = options_.manoeuvre_mps / options_.sensor.sound_mps * now->frequency_hz;
+  const auto differs = [&](const Heard& from) {
+    return std::abs(now->frequency_hz - from.frequency_hz) > by_chance_hz + by_turning_hz;
+  };
+  if (!last_ || !differs(*last_)) {
+    last_ = now;
+    doubtful_.reset();
+    return Source::steady;
+  }
+  if (!doubtful_ || differs(*doubtful_)) {
+    doubtful_ = now;
+    return Source::doubtful;
+  }
+  last_ = now;
+  return Source::changed;
+}
+
+void PassiveSonarTracker::notice_turn(const StepRecord& record) {
+  if (!record.mode_probabilities) return;
+  const bool turning = (*record.mode_probabilities)[0] < options_.steady_probability;
+  if (turning == turning_) return;
+  turning_ = turning;
+  events_.push_back({turning ? TrackEvent::Kind::turn_began : TrackEvent::Kind::turn_ended, record.time_s});
+}
+
+std::span<const StepRecord> PassiveSonarTracker::follow(const Measurement& measurement) {
+  const Source source = watch_source(measurement);
+  if (source == Source::steady) {
+    const std::span<const StepRecord> records = filter_->step(measurement);
+    if (records.empty()) return records;
+    notice_turn(records.front());
+    remember(records.front());
+    return records;
+  }
+  // The bearing alone; a new source begins as one that is heard for the first time.
+  Measurement bearing = measurement;
+  bearing.z[1] = std::numeric_limits<double>::quiet_NaN();
+  const std::span<const StepRecord> records = filter_->step(bearing);
+  if (records.empty()) return records;
+  notice_turn(records.front());
+  remember(records.front());
+  if (source == Source::doubtful) return records;
+  record_ = records.front();
+  if (const auto begun = options_.sensor.start(plane_, measurement)) {
+    filter_->take_over(measurement.time_s, begun->x, begun->P);
+    events_.push_back({TrackEvent::Kind::source_changed, doubtful_->time_s, begun->x[4]});
+    const Eigen::Index n = record_.x.size();
+    record_.x = begun->x.head(n);
+    record_.P = begun->P.topLeftCorner(n, n);
+  }
+  doubtful_.reset();
+  return {&record_, 1};
+}
+
+}  // namespace truebearing

@@ -1,0 +1,183 @@
+#include "truebearing/tracker/passive_sonar_tracker.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/frequency_runs.hpp"
+#include "truebearing/filter/interacting_multiple_model.hpp"
+#include "truebearing/filter/kalman.hpp"
+#include "truebearing/tracker/filter_tracker.hpp"
+
+namespace truebearing {
+namespace {
+
+using testing::frequency_run;
+using testing::FrequencyMotion;
+using testing::kFrequencySensor;
+using Kind = TrackEvent::Kind;
+
+constexpr double kHandOver_s = 320.0;
+
+// Stands in for a batch estimator: says the truth, known to 100 m, 0.1 m/s and 10 mHz, from `known_s` on.
+class Oracle final : public Tracker {
+ public:
+  Oracle(Recording recording, double known_s) : recording_(std::move(recording)), known_s_(known_s) {
+    record_.space = &plane_frequency_space();
+  }
+  std::span<const StepRecord> step(const Measurement& measurement) override {
+    while (recording_.measurements[next_].time_s < measurement.time_s) ++next_;
+    record_.time_s = measurement.time_s;
+    record_.sensor = measurement.sensor;
+    record_.status = measurement.time_s >= known_s_ ? StepStatus::ok : StepStatus::unobservable;
+    record_.x = recording_.truth[0].x[next_];
+    record_.P = Eigen::Vector<double, 5>(1e4, 1e4, 1e-2, 1e-2, 1e-4).asDiagonal();
+    return {&record_, 1};
+  }
+  void reset() override { next_ = 0; }
+  std::unique_ptr<Tracker> clone() const override { return std::make_unique<Oracle>(recording_, known_s_); }
+  const StateSpace& space() const override { return plane_frequency_space(); }
+
+ private:
+  Recording recording_;
+  double known_s_;
+  std::size_t next_ = 0;
+  StepRecord record_;
+};
+
+using OneMode = Mode<KalmanFilter<5>, FrequencyMotion>;
+
+MultipleModels<OneMode> two_levels() {
+  MultipleModels<OneMode> models;
+  models.modes = {OneMode{{{{1e-9}}}}, OneMode{{{{1e-2}}}}};
+  models.chain = star_chain(2, 0.002, 0.05, 1.0, 8.0);
+  models.chain.initial = Eigen::Vector2d(0.99, 0.01);
+  return models;
+}
+
+PassiveSonarTracker sonar(const Recording& recording, PassiveSonarOptions options = {},
+                          const StateSpace& space = plane_frequency_space(), double known_s = 0.0) {
+  using Filter = FilterTracker<InteractingMultipleModel<OneMode>, MultipleModels<OneMode>, BearingFrequencySensor>;
+  options.hand_over_s = kHandOver_s;
+  options.sensor = kFrequencySensor;
+  return {options, std::make_unique<Oracle>(recording, known_s),
+          std::make_unique<Filter>(space, two_levels(), kFrequencySensor, HandOverStart{})};
+}
+
+std::vector<Kind> kinds(const Tracker& tracker) {
+  std::vector<Kind> all;
+  for (const TrackEvent& event : tracker.events()) all.push_back(event.kind);
+  return all;
+}
+
+double last_frequency_error_hz(Tracker& tracker, const Recording& recording) {
+  double error = std::nan("");
+  for (std::size_t k = 0; k < recording.measurements.size(); ++k) {
+    const auto records = tracker.step(recording.measurements[k]);
+    if (!records.empty()) error = records[0].x[4] - recording.truth[0].x[k][4];
+  }
+  return error;
+}
+
+TEST(PassiveSonarTracker, HandsOverAtItsTimeAndGoesOnFromThere) {
+  const Recording recording = frequency_run(1);
+  PassiveSonarTracker tracker = sonar(recording);
+  Oracle oracle(recording, 0.0);
+  for (const Measurement& measurement : recording.measurements) {
+    const auto records = tracker.step(measurement);
+    ASSERT_EQ(records.size(), 1u);
+    const auto batch = oracle.step(measurement);
+    EXPECT_EQ(records[0].x == batch[0].x, measurement.time_s <= kHandOver_s);
+    EXPECT_EQ(records[0].mode_probabilities.has_value(), measurement.time_s > kHandOver_s);
+  }
+  ASSERT_EQ(kinds(tracker), (std::vector{Kind::handed_over}));
+  EXPECT_EQ(tracker.events()[0].time_s, kHandOver_s);
+}
+
+TEST(PassiveSonarTracker, WaitsUntilTheRangeIsKnownWellEnough) {
+  const Recording recording = frequency_run(1);
+  PassiveSonarTracker late = sonar(recording, {}, plane_frequency_space(), 500.0);
+  PassiveSonarTracker never = sonar(recording, {.hand_over_percent = 0.1});
+  for (const Measurement& measurement : recording.measurements) {
+    late.step(measurement);
+    never.step(measurement);
+  }
+  ASSERT_EQ(kinds(late), (std::vector{Kind::handed_over}));
+  EXPECT_EQ(late.events()[0].time_s, 504.0);
+  EXPECT_TRUE(never.events().empty());
+}
+
+TEST(PassiveSonarTracker, MayHideItsBatchAndItsFrequency) {
+  const Recording recording = frequency_run(1);
+  PassiveSonarTracker tracker = sonar(recording, {.show_batch = false}, plane_space());
+  for (const Measurement& measurement : recording.measurements) {
+    const auto records = tracker.step(measurement);
+    if (measurement.time_s < kHandOver_s) {
+      EXPECT_TRUE(records.empty());
+      continue;
+    }
+    ASSERT_EQ(records.size(), 1u);
+    EXPECT_EQ(records[0].x.size(), 4);
+    EXPECT_EQ(records[0].P.cols(), 4);
+    EXPECT_EQ(records[0].space, &plane_space());
+  }
+}
+
+TEST(PassiveSonarTracker, FollowsASourceThatChanges) {
+  constexpr double kJump_s = 480.0;
+  for (const double jump_hz : {30.0, -0.5}) {
+    const Recording recording = frequency_run(2, 100, jump_hz, kJump_s);
+    PassiveSonarTracker tracker = sonar(recording);
+    EXPECT_NEAR(last_frequency_error_hz(tracker, recording), 0.0, 0.1);
+    ASSERT_EQ(kinds(tracker), (std::vector{Kind::handed_over, Kind::source_changed})) << jump_hz;
+    EXPECT_EQ(tracker.events()[1].time_s, kJump_s);
+    EXPECT_NEAR(tracker.events()[1].value, testing::kSource_hz + jump_hz, 0.2);
+  }
+}
+
+TEST(PassiveSonarTracker, TakesOneFrequencyThatIsFarOffForAnOutlier) {
+  Recording recording = frequency_run(3);
+  const double clean = [&] {
+    PassiveSonarTracker tracker = sonar(recording);
+    return last_frequency_error_hz(tracker, recording);
+  }();
+  recording.measurements[60].z[1] += 5.0;
+  PassiveSonarTracker tracker = sonar(recording);
+  EXPECT_NEAR(last_frequency_error_hz(tracker, recording), clean, 0.01);
+  EXPECT_EQ(kinds(tracker), (std::vector{Kind::handed_over}));
+}
+
+TEST(PassiveSonarTracker, SaysWhenTheTargetTurns) {
+  Recording recording = frequency_run(4, 200);
+  // From 800 s on the target sails another course: 90 degrees to starboard.
+  RandomStream noise({.seed = 9}, StreamId::test);
+  const BoundedVector at = recording.truth[0].x[100];
+  for (std::size_t k = 101; k < recording.measurements.size(); ++k) {
+    Measurement& m = recording.measurements[k];
+    BearingFrequency<>::State x = at;
+    x.segment<2>(2) << at[3], -at[2];
+    x.head<2>() += (m.time_s - recording.measurements[100].time_s) * x.segment<2>(2);
+    recording.truth[0].x[k] = x;
+    m.z = kFrequencySensor.model(m).h(x) +
+          Eigen::Vector2d(kFrequencySensor.sigma_rad * noise.normal(), kFrequencySensor.sigma_hz * noise.normal());
+  }
+  PassiveSonarTracker tracker = sonar(recording);
+  for (const Measurement& measurement : recording.measurements) tracker.step(measurement);
+  ASSERT_GE(tracker.events().size(), 2u);
+  EXPECT_EQ(tracker.events()[1].kind, Kind::turn_began);
+  EXPECT_GT(tracker.events()[1].time_s, 800.0);
+  EXPECT_LT(tracker.events()[1].time_s, 900.0);
+}
+
+TEST(PassiveSonarTracker, BeginsAnewAfterAReset) {
+  const Recording first = frequency_run(5, 100, 10.0, 480.0);
+  PassiveSonarTracker tracker = sonar(first);
+  const std::unique_ptr<Tracker> other = tracker.clone();
+  const double once = last_frequency_error_hz(tracker, first);
+  tracker.reset();
+  EXPECT_TRUE(tracker.events().empty());
+  EXPECT_EQ(last_frequency_error_hz(tracker, first), once);
+  EXPECT_EQ(last_frequency_error_hz(*other, first), once);
+  EXPECT_EQ(other->events().size(), tracker.events().size());
+}
+
+}  // namespace
+}  // namespace truebearing

@@ -84,6 +84,14 @@ TEST(Summary, PhasesAreScoredApart) {
   EXPECT_DOUBLE_EQ(summary.quantity("position_m")->coverage95, 2.0 / 5.0) << "7, 4 and 9 are beyond 3.84";
 }
 
+TEST(Summary, StepsOfNoPhaseAreInNone) {
+  std::vector<RunScore> runs{run({30.0, 40.0, 3.0}, {1.0, 1.0, 1.0}, {1.0, 1.0, 1.0})};
+  runs[0].phase = {-1, -1, 0};
+  const TrackerSummary summary = summarise("t", kScorer, pointers(runs), {});
+  ASSERT_EQ(summary.quantity("position_m")->phases.size(), 1u);
+  EXPECT_DOUBLE_EQ(summary.quantity("position_m")->phases[0].rmse, 3.0);
+}
+
 TEST(Summary, MedianOfAnEvenNumberIsTheMiddle) {
   const std::vector<RunScore> runs{run({9.0, 1.0}, {0.0, 0.0}, {1.0, 1.0}), run({2.0, 4.0}, {0.0, 0.0}, {1.0, 1.0})};
   EXPECT_DOUBLE_EQ(summarise("t", kScorer, pointers(runs), {}).quantity("position_m")->median, 3.0);

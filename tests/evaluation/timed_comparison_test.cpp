@@ -37,7 +37,8 @@ class FixedTracker final : public Tracker {
  public:
   FixedTracker(double factor, std::optional<double> cost = {}) : factor_(factor), cost_(cost) {}
   std::span<const StepRecord> step(const Measurement& measurement) override {
-    const VesselPath path({5000.0 * std::sin(radians(60.0)), 5000.0 * std::cos(radians(60.0))}, 2.0, radians(200.0), {});
+    const VesselPath path({5000.0 * std::sin(radians(60.0)), 5000.0 * std::cos(radians(60.0))}, 2.0, radians(200.0),
+                          {});
     const SensorState target = path.at(measurement.time_s).state;
     const Eigen::Vector2d own_ship = measurement.sensor->position_m;
     record_.time_s = measurement.time_s;
@@ -121,6 +122,38 @@ TEST(TimedComparison, BoundAndEfficiency) {
     EXPECT_GT(value(bound["metrics"], name, 400.0), 0.0) << name;
 }
 
+// The same target as a source, of which the trackers know the plane alone.
+TEST(TimedComparison, OfPassiveSonarHasTheBoundOnTheFrequencyToo) {
+  BearingsOnlyParameters parameters = two_legs();
+  parameters.sensor.frequency_sigma_hz = 0.02;
+  parameters.source = SourceParameters{};
+  VesselParameters::Turn turn;
+  turn.time_s = 300.0;
+  turn.angle_deg = 30.0;
+  parameters.target.turns = {turn};
+  Ensemble ensemble;
+  ensemble.add("far", std::make_unique<FixedTracker>(1.3));
+  TrackerSet set(std::move(ensemble));
+  set.show_member("far");
+  ComparisonOptions options;
+  options.runs = 2;
+  options.scoring.times_s = {280.0, 400.0};
+  options.scoring.target_motion = true;
+  options.cramer_rao = TargetMotionBound{};
+  const BearingsOnlyScenario scenario(parameters);
+  const Comparison comparison = compare(set, {{"sonar", &scenario}}, options);
+  const json report = json::parse(comparison_json(comparison));
+  EXPECT_NEAR(value(report["trackers"]["far"]["metrics"], "range_error_mean", 280.0), 30.0, 1e-9);
+  const json& bound = report["bounds"]["cramer_rao"]["metrics"];
+  for (const char* name : {"position_rmse", "velocity_rmse", "frequency_rmse"}) {
+    EXPECT_GT(value(bound, name, 280.0), 0.0) << name;
+    EXPECT_TRUE(value(bound, name, 400.0).is_null()) << "the target has turned";
+  }
+  EXPECT_THAT(comparison_table(comparison), HasSubstr("cramer_rao"));
+  const json plain = json::parse(comparison_json(compared()));
+  EXPECT_EQ(value(plain["bounds"]["cramer_rao"]["metrics"], "frequency_rmse", 400.0), "there is none");
+}
+
 TEST(TimedComparison, PairsAtTheTimes) {
   const Comparison comparison = compared();
   const json pair = json::parse(comparison_json(comparison))["paired"]["far - true"];
@@ -133,8 +166,9 @@ TEST(TimedComparison, PairsAtTheTimes) {
 
 TEST(TimedComparison, TableHasTheTimesAndTheBound) {
   const std::string table = comparison_table(compared());
-  for (const char* text : {"position rmse m", "100 s", "400 s", "range error mean percent", "range efficiency", "cramer_rao",
-                           "time to 20 percent s", "global minimum share", "e+14", "far - true, position m"})
+  for (const char* text :
+       {"position rmse m", "100 s", "400 s", "range error mean percent", "range efficiency", "cramer_rao",
+        "time to 20 percent s", "global minimum share", "e+14", "far - true, position m"})
     EXPECT_THAT(table, HasSubstr(text));
 }
 

@@ -18,6 +18,7 @@ constexpr std::array kBounded{
     Bounded{"course_error_rmse", "deg", &TargetMotionVariance::course_deg2},
     Bounded{"speed_error_rmse", "m/s", &TargetMotionVariance::speed_m2ps2},
 };
+constexpr Bounded kFrequency{"frequency_rmse", "Hz", &TargetMotionVariance::frequency_hz2};
 constexpr const char* kRange = "range_error_rmse";
 
 // Over runs, at one time. A run that does not reach the time has no step there, and NaN, as has one that is not
@@ -29,14 +30,24 @@ double mean_variance(const std::vector<const std::vector<TargetMotionVariance>*>
   return sum / static_cast<double>(runs.size());
 }
 
+// True where a frequency is bounded in any run at any time.
+bool has_frequency(const std::vector<const std::vector<TargetMotionVariance>*>& runs) {
+  for (const std::vector<TargetMotionVariance>* run : runs)
+    for (const TargetMotionVariance& at : *run)
+      if (std::isfinite(at.frequency_hz2)) return true;
+  return false;
+}
+
 }  // namespace
 
 BoundSummary summarise_bound(const std::vector<const std::vector<TargetMotionVariance>*>& runs,
                              const std::vector<double>& times_s) {
   BoundSummary summary;
+  std::vector<Bounded> bounded(kBounded.begin(), kBounded.end());
+  if (has_frequency(runs)) bounded.push_back(kFrequency);
   double position_m2 = 0.0, velocity_m2ps2 = 0.0;
   for (std::size_t time = 0; time < times_s.size(); ++time) {
-    for (const Bounded& part : kBounded)
+    for (const Bounded& part : bounded)
       summary.metrics.push_back(
           {part.name, part.unit, times_s[time], std::sqrt(mean_variance(runs, time, part.variance)), std::nan("")});
     position_m2 += mean_variance(runs, time, &TargetMotionVariance::position_m2);

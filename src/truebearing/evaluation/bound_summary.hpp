@@ -11,8 +11,8 @@ namespace truebearing {
 struct BoundSummary {
   double position_m = 0.0;  ///< over runs and times
   double velocity_mps = 0.0;
-  /// position_rmse, velocity_rmse, range_error_rmse, course_error_rmse, speed_error_rmse at each time: what the metrics
-  /// of those names cannot fall below. NaN where the state of any run is not determined yet.
+  /// position_rmse, velocity_rmse, range_error_rmse, course_error_rmse, speed_error_rmse, and where it is measured
+  /// frequency_rmse, at each time: what the metrics of those names cannot fall below. NaN where any run has no bound.
   std::vector<Metric> metrics;
 };
 

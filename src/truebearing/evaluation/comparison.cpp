@@ -6,6 +6,7 @@
 #include <span>
 
 #include "truebearing/core/error.hpp"
+#include "truebearing/evaluation/event_metrics.hpp"
 
 namespace truebearing {
 
@@ -73,6 +74,8 @@ Comparison summarise_sets(const TrackerSet& trackers, const std::vector<Scorer>&
   const auto add_metrics = [](TrackerSummary& summary, const std::vector<Metric>& metrics) {
     summary.metrics.insert(summary.metrics.end(), metrics.begin(), metrics.end());
   };
+  for (std::size_t i = 0; i < scorers.size(); ++i)
+    add_metrics(comparison.trackers[i], event_metrics(scorers[i], by_tracker[i]));
   if (options.cramer_rao) {
     comparison.cramer_rao = summarise_bound(bounds, options.scoring.times_s);
     for (TrackerSummary& summary : comparison.trackers)

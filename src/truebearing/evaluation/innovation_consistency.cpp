@@ -6,11 +6,20 @@
 #include "truebearing/core/chi_square.hpp"
 
 namespace truebearing {
+namespace {
+
+// A part of z may be missing.
+double freedom_of(const Innovation& innovation) {
+  const bool told = innovation.z.size() == innovation.nu.size();
+  return static_cast<double>(told ? innovation.z.array().isFinite().count() : innovation.nu.size());
+}
+
+}  // namespace
 
 void InnovationConsistency::add(const StepRecord& record) {
   if (!record.innovation) return;
   const Innovation& innovation = *record.innovation;
-  const double freedom = static_cast<double>(innovation.nu.size());
+  const double freedom = freedom_of(innovation);
   if (first_steps_ < kFirstSteps) {  // also those that a gate turned away: with a wrong unit it turns away all
     ++first_steps_;
     first_freedom_ += freedom;
@@ -20,6 +29,7 @@ void InnovationConsistency::add(const StepRecord& record) {
   ++steps_;
   freedom_ += freedom;
   nis_sum_ += innovation.nis;
+  if (innovation.z.size() > 0 && !std::isfinite(innovation.z[0])) return;
   const double e = innovation.nu[0] / std::sqrt(innovation.S(0, 0));
   if (steps_ > 1) product_sum_ += e * last_e_;
   square_sum_ += e * e;

@@ -14,7 +14,7 @@ constexpr double kNotScored = std::numeric_limits<double>::quiet_NaN();
 
 void check_target_motion(const Recording& recording) {
   const auto has_sensor = [](const Measurement& measurement) { return measurement.sensor.has_value(); };
-  if (recording.truth_space != &plane_space() ||
+  if (!recording.truth_space || !begins_in_plane(*recording.truth_space) ||
       std::none_of(recording.measurements.begin(), recording.measurements.end(), has_sensor))
     throw InputError("scoring.target_motion", "has no own ship to be relative to, or no truth in the plane",
                      "measurements with own-ship columns");
@@ -22,7 +22,7 @@ void check_target_motion(const Recording& recording) {
 
 }  // namespace
 
-Scorer::Scorer(const StateSpace& truth, const StateSpace& estimate) {
+Scorer::Scorer(const StateSpace& truth, const StateSpace& estimate) : truth_(&truth) {
   std::vector<int> place_of(truth.components.size(), -1);
   for (int i = 0; i < truth.size(); ++i) {
     const int in_estimate = estimate.component_index(truth.components[static_cast<std::size_t>(i)]);
@@ -85,6 +85,7 @@ std::vector<RunScore> score_recording(TrackerSet& trackers, const std::vector<Sc
   for (std::size_t i = 0; i < scorers.size(); ++i) {
     scorers[i].prepare(scores[i], steps);
     scores[i].phase = recording.truth.front().phase;
+    scores[i].turns_at_s = recording.truth.front().turns_at_s;
     for (const int at : time_steps) scores[i].at_times.push_back({.step = at});
   }
 
@@ -100,6 +101,10 @@ std::vector<RunScore> score_recording(TrackerSet& trackers, const std::vector<Sc
         if (at.step == static_cast<int>(step))
           at.take(truth[step], records.front(), recording.measurements[step].sensor, rule.target_motion);
     }
+  }
+  for (std::size_t i = 0; i < scorers.size(); ++i) {
+    const std::span<const TrackEvent> events = trackers.events(static_cast<int>(i));
+    scores[i].events.assign(events.begin(), events.end());
   }
   return scores;
 }

@@ -2,6 +2,7 @@
 // these, so that the order in which runs were computed cannot matter.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +22,8 @@ struct RunScore {
   int corrected = 0;                               ///< scored steps of a corrected tracker
   double gate_sum = 0.0;                           ///< sum of the gate's weight over them
   std::vector<TimeScore> at_times;                 ///< [time] of ScoringRule::times_s
+  std::vector<TrackEvent> events;                  ///< that the tracker reported by the end of the run
+  std::optional<double> turns_at_s;                ///< of the truth (measurement/recording.hpp)
 };
 
 /// What is scored.
@@ -37,6 +40,7 @@ class Scorer {
  public:
   Scorer(const StateSpace& truth, const StateSpace& estimate);
 
+  const StateSpace& truth() const { return *truth_; }
   /// The truth's quantities that the tracker estimates.
   const std::vector<std::string>& quantities() const { return quantity_names_; }
   /// How many components the NEES is taken over: its expected value for a consistent tracker.
@@ -48,6 +52,7 @@ class Scorer {
   void score_step(const BoundedVector& truth, const StepRecord& record, std::size_t step, RunScore& score) const;
 
  private:
+  const StateSpace* truth_;
   std::vector<int> truth_index_;     // of each component that both have
   std::vector<int> estimate_index_;  // its place in the estimate
   std::vector<std::string> quantity_names_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace truebearing {
 namespace {
@@ -52,6 +53,13 @@ Estimate mean_of(const std::vector<double>& values) {
   double squares = 0.0;
   for (const double value : values) squares += (value - mean) * (value - mean);
   return {mean, n > 1.0 ? std::sqrt(squares / (n - 1.0) / n) : kNaN};
+}
+
+Estimate share_of(const std::vector<double>& values) {
+  const double n = static_cast<double>(values.size());
+  if (values.empty()) return {kNaN, kNaN};
+  const double p = std::accumulate(values.begin(), values.end(), 0.0) / n;
+  return {p, std::sqrt(p * (1.0 - p) / n)};
 }
 
 Estimate standard_deviation_of(const std::vector<double>& values) {

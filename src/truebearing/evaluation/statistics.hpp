@@ -35,7 +35,9 @@ Estimate pooled_rmse(const std::vector<SquaredErrors>& runs);
 
 /// Mean of independent values.
 Estimate mean_of(const std::vector<double>& values);
-/// Their standard deviation, about the mean, over n - 1; its standard error is the jackknife.
+/// Mean of values that are 0 or 1, with the standard error of a binomial.
+Estimate share_of(const std::vector<double>& values);
+/// Of independent values, the standard deviation, about the mean, over n - 1; its standard error is the jackknife.
 Estimate standard_deviation_of(const std::vector<double>& values);
 /// The middle; of an even number the mean of the two in the middle.
 double median_of(std::vector<double> values);

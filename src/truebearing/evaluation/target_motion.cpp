@@ -30,9 +30,12 @@ TargetMotionVariance target_motion_variance(const Eigen::Vector4d& truth, const 
   const Eigen::Vector2d offset_m = truth.head<2>() - own_ship.position_m, v = truth.tail<2>();
   const Eigen::Matrix2d position = P.topLeftCorner<2, 2>(), velocity = P.bottomRightCorner<2, 2>();
   const double range_m = offset_m.norm(), speed = v.norm();
-  return {position.trace(), velocity.trace(), variance(position, 100.0 * offset_m / (range_m * range_m)),
+  return {position.trace(),
+          velocity.trace(),
+          variance(position, 100.0 * offset_m / (range_m * range_m)),
           variance(velocity, degrees(1.0) * Eigen::Vector2d(v.y(), -v.x()) / (speed * speed)),
-          variance(velocity, v / speed)};
+          variance(velocity, v / speed),
+          std::numeric_limits<double>::quiet_NaN()};
 }
 
 }  // namespace truebearing

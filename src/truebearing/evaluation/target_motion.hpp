@@ -19,15 +19,17 @@ struct TargetMotionError {
 TargetMotionError target_motion_error(const Eigen::Vector4d& truth, const Eigen::Vector4d& estimate,
                                       const SensorState& own_ship);
 
-/// Variances of errors with covariance P about the truth, to first order; position and velocity are the traces.
+/// Variances of errors with a covariance about the truth, to first order; position and velocity are the traces.
 struct TargetMotionVariance {
   double position_m2 = std::numeric_limits<double>::quiet_NaN();
   double velocity_m2ps2 = std::numeric_limits<double>::quiet_NaN();
   double range_percent2 = std::numeric_limits<double>::quiet_NaN();
   double course_deg2 = std::numeric_limits<double>::quiet_NaN();
   double speed_m2ps2 = std::numeric_limits<double>::quiet_NaN();
+  double frequency_hz2 = std::numeric_limits<double>::quiet_NaN();  ///< of the source, where it is in the state
 };
 
+/// Of the covariance P of the state, which has no frequency.
 TargetMotionVariance target_motion_variance(const Eigen::Vector4d& truth, const Eigen::Matrix4d& P,
                                             const SensorState& own_ship);
 

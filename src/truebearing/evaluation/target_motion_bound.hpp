@@ -1,12 +1,15 @@
 // The Cramer-Rao bound on a target's position, velocity, range, course and speed, run by run, from the truth and where
-// own ship was: bearings of a target at constant velocity, or one whose acceleration is white noise. With a prior it is
-// the posterior bound. Van Trees 1968; Tichavsky, Muravchik and Nehorai 1998.
+// own ship was: bearings of a target at constant velocity, or one whose acceleration is white noise. Where frequencies
+// are measured with them, the unknowns are the state [east, north, v_east, v_north] and one frequency for each that the
+// source has in truth: when it jumps, and back to which it does, is taken as known. With a prior it is the posterior
+// bound. Van Trees 1968; Tichavsky, Muravchik and Nehorai 1998.
 #pragma once
 
 #include <optional>
 #include <vector>
 
 #include "truebearing/evaluation/target_motion.hpp"
+#include "truebearing/measurement/bearing_frequency.hpp"
 #include "truebearing/measurement/recording.hpp"
 #include "truebearing/tma/range_prior.hpp"
 
@@ -15,12 +18,16 @@ namespace truebearing {
 struct TargetMotionBound {
   /// What is believed at the first bearing; its covariance is taken at the true range, bearing and speed.
   std::optional<RangePrior> prior;
-  double q_m2ps3 = 0.0;                     ///< spectral density of the acceleration; 0 for a constant velocity
-  std::optional<double> bearing_sigma_rad;  ///< where measurements do not carry their own
+  double q_m2ps3 = 0.0;                      ///< spectral density of the acceleration; 0 for a constant velocity
+  std::optional<double> bearing_sigma_rad;   ///< where measurements do not carry their own
+  bool frequencies = true;                   ///< are they used, where they are measured?
+  std::optional<double> frequency_sigma_hz;  ///< where measurements do not carry their own
+  double sound_mps = kSoundInWater_mps;      ///< speed of sound
 
-  /// The variances at each of `steps` of the recording: NaN where the state is not determined yet, or the step is
-  /// negative. Throws InputError where the recording holds no bearings from an own ship, or no truth in the plane, or a
-  /// truth that changes its velocity though q is 0.
+  /// The variances at each of `steps` of the recording: NaN where the state is not determined yet, where q is 0 and the
+  /// truth has changed its velocity by then (a bound that held for it would need to know how), or where the step is
+  /// negative. Throws InputError where the recording holds no bearings from an own ship, or no truth in the plane, or
+  /// none of the frequency that is used.
   std::vector<TargetMotionVariance> variances(const Recording& recording, const std::vector<int>& steps) const;
 };
 

@@ -36,15 +36,6 @@ Estimate rmse(const std::vector<double>& errors) {
   return pooled_rmse(runs);
 }
 
-// Share of the values that hold, with the standard error of a binomial.
-template <typename Holds>
-Estimate share(const std::vector<double>& values, const Holds& holds) {
-  const double n = static_cast<double>(values.size());
-  if (values.empty()) return {std::nan(""), std::nan("")};
-  const double p = static_cast<double>(std::count_if(values.begin(), values.end(), holds)) / n;
-  return {p, std::sqrt(p * (1.0 - p) / n)};
-}
-
 class TimeFigures {
  public:
   TimeFigures(const Scorer& scorer, const Runs& runs, const ScoringRule& rule)
@@ -79,7 +70,9 @@ class TimeFigures {
     const std::vector<double> nees = finite(runs_, [&](const RunScore& run) { return nees_at(run, time_); });
     const double quantile = chi_square_quantile(0.95, scorer_.dimension());
     add("nees", "1", mean_of(nees));
-    add("coverage95", "share", share(nees, [&](double value) { return value <= quantile; }));
+    std::vector<double> covered;
+    for (const double value : nees) covered.push_back(value <= quantile ? 1.0 : 0.0);
+    add("coverage95", "share", share_of(covered));
     // 1 for a run that is missing or lost, 0 for another that counts.
     const auto counted = [&](const auto& is) {
       return finite(runs_, [&](const RunScore& run) {
@@ -87,8 +80,7 @@ class TimeFigures {
       });
     };
     const auto is_missing = [&](const RunScore& run) { return !std::isfinite(error_at(run, 0, time_)); };
-    const auto is_one = [](double value) { return value == 1.0; };
-    add("missing_share", "share", share(counted(is_missing), is_one));
+    add("missing_share", "share", share_of(counted(is_missing)));
     if (rule_.loss_thresholds.empty()) return;
     const auto is_lost = [&](const RunScore& run) {
       for (const auto& [name, threshold] : rule_.loss_thresholds)
@@ -96,7 +88,7 @@ class TimeFigures {
           if (scorer_.quantities()[q] == name && !(error_at(run, q, time_) <= threshold)) return true;
       return false;
     };
-    add("loss_rate", "share", share(counted(is_lost), is_one));
+    add("loss_rate", "share", share_of(counted(is_lost)));
   }
 
   void add_target_motion() {

@@ -33,6 +33,10 @@ TrackerCounts TrackerSet::counts(int entry) const {
   return ensemble_.tracker(at(entry).member).counts();
 }
 
+std::span<const TrackEvent> TrackerSet::events(int entry) const {
+  return ensemble_.tracker(at(entry).member).events();
+}
+
 void TrackerSet::reset() {
   ensemble_.reset();
   for (Correction& correction : corrections_) correction.reset();

@@ -27,6 +27,8 @@ class TrackerSet {
   /// The records of the last step. Valid until the next step.
   std::span<const StepRecord> records(int entry) const { return at(entry).records; }
   TrackerCounts counts(int entry) const;
+  /// What it noticed since reset(): a correction notices what its base does.
+  std::span<const TrackEvent> events(int entry) const;
 
   void reset();
   TrackerSet clone() const;

@@ -1,0 +1,132 @@
+#include "truebearing/evaluation/event_metrics.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "truebearing/evaluation/comparison.hpp"
+#include "truebearing/evaluation/report.hpp"
+
+namespace truebearing {
+namespace {
+
+using ::testing::HasSubstr;
+using Kind = TrackEvent::Kind;
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+const Scorer kSource(plane_frequency_space(), plane_frequency_space());
+const Scorer kPlane(plane_space(), plane_space());
+
+RunScore run(std::optional<double> turns_at_s, std::vector<TrackEvent> events) {
+  RunScore score;
+  score.turns_at_s = turns_at_s;
+  score.events = std::move(events);
+  return score;
+}
+
+std::vector<Metric> metrics(const Scorer& scorer, const std::vector<RunScore>& runs) {
+  std::vector<const RunScore*> all;
+  for (const RunScore& score : runs) all.push_back(&score);
+  return event_metrics(scorer, all);
+}
+
+std::optional<Metric> find(const std::vector<Metric>& all, const std::string& name) {
+  for (const Metric& metric : all)
+    if (metric.name == name) return metric;
+  return std::nullopt;
+}
+
+TEST(EventMetrics, ByHand) {
+  const std::vector<RunScore> runs{
+      run(1500.0, {{Kind::source_changed, 600.0, 130.0}, {Kind::turn_began, 1540.0}, {Kind::turn_began, 1520.0}}),
+      run(1200.0, {{Kind::turn_began, 1190.0}, {Kind::turn_ended, 1195.0}, {Kind::turn_began, 1300.0}}),
+      run(1300.0, {{Kind::turn_ended, 1400.0}}),
+      run(kNever, {{Kind::turn_began, 1400.0}}),
+      run(kNever, {{Kind::source_changed, 900.0, 99.0}, {Kind::source_changed, 950.0, 100.0}}),
+  };
+  const std::vector<Metric> found = metrics(kSource, runs);
+  EXPECT_DOUBLE_EQ(find(found, "source_change_share")->value, 2.0 / 5.0) << "runs, not events";
+  EXPECT_DOUBLE_EQ(find(found, "source_change_share")->se, std::sqrt(0.4 * 0.6 / 5.0));
+  EXPECT_EQ(find(found, "turn_delay")->unit, "s");
+  EXPECT_DOUBLE_EQ(find(found, "turn_delay")->value, (20.0 + 100.0) / 2.0) << "the first one from the turn on";
+  EXPECT_DOUBLE_EQ(find(found, "turn_found_share")->value, 2.0 / 3.0) << "of the runs that turn";
+  EXPECT_DOUBLE_EQ(find(found, "false_turn_share")->value, 2.0 / 5.0) << "before the turn, and where there is none";
+  for (const Metric& metric : found) EXPECT_FALSE(metric.time_s);
+}
+
+TEST(EventMetrics, AreOfTrackersThatReportAndOfWhatIsTold) {
+  EXPECT_TRUE(metrics(kSource, {run(1500.0, {}), run(kNever, {})}).empty()) << "a tracker that notices nothing";
+  const std::vector<Metric> untold = metrics(kPlane, {run(std::nullopt, {{Kind::turn_began, 5.0}})});
+  EXPECT_TRUE(untold.empty()) << "no frequency in the truth, and no word of a turn";
+  const std::vector<Metric> quiet = metrics(kPlane, {run(kNever, {{Kind::range_known, 5.0}}), run(kNever, {})});
+  ASSERT_EQ(quiet.size(), 1u);
+  EXPECT_EQ(quiet[0].name, "false_turn_share");
+  EXPECT_EQ(quiet[0].value, 0.0);
+  const std::vector<Metric> blind = metrics(kPlane, {run(1500.0, {{Kind::handed_over, 1050.0}})});
+  EXPECT_EQ(find(blind, "turn_found_share")->value, 0.0);
+  EXPECT_TRUE(std::isnan(find(blind, "turn_delay")->value));
+}
+
+// Stands still where the first measurement was, and says so.
+class Reporter final : public Tracker {
+ public:
+  explicit Reporter(bool reports) : reports_(reports) {
+    record_.space = &plane_space();
+    record_.x = BoundedVector::Zero(4);
+    record_.P = BoundedMatrix::Identity(4, 4);
+  }
+  std::span<const StepRecord> step(const Measurement& measurement) override {
+    record_.time_s = measurement.time_s;
+    if (reports_ && measurement.time_s == 30.0) events_.push_back({Kind::turn_began, 25.0});
+    return {&record_, 1};
+  }
+  void reset() override { events_.clear(); }
+  std::unique_ptr<Tracker> clone() const override { return std::make_unique<Reporter>(reports_); }
+  const StateSpace& space() const override { return plane_space(); }
+  std::span<const TrackEvent> events() const override { return events_; }
+
+ private:
+  bool reports_;
+  StepRecord record_;
+  std::vector<TrackEvent> events_;
+};
+
+class TurnAtTwenty final : public Scenario {
+ public:
+  Recording simulate(const RunKey&) const override {
+    Recording recording;
+    recording.measured = {"east_m", "north_m"};
+    recording.truth_space = &plane_space();
+    recording.truth.resize(1);
+    recording.truth[0].turns_at_s = 20.0;
+    for (int k = 0; k < 6; ++k) {
+      recording.measurements.push_back({.time_s = 10.0 * k, .z = BoundedVector::Zero(2), .sigma = {}, .sensor = {}});
+      recording.truth[0].x.push_back(BoundedVector::Zero(4));
+    }
+    return recording;
+  }
+  const StateSpace& truth_space() const override { return plane_space(); }
+};
+
+TEST(EventMetrics, ComeThroughAComparison) {
+  Ensemble ensemble;
+  ensemble.add("awake", std::make_unique<Reporter>(true));
+  ensemble.add("asleep", std::make_unique<Reporter>(false));
+  TrackerSet set(std::move(ensemble));
+  set.show_member("awake");
+  set.show_member("asleep");
+  ComparisonOptions options;
+  options.runs = 3;
+  const TurnAtTwenty scenario;
+  const Comparison comparison = compare(set, {{"turn", &scenario}}, options);
+  ASSERT_TRUE(find(comparison.trackers[0].metrics, "turn_delay"));
+  EXPECT_EQ(find(comparison.trackers[0].metrics, "turn_delay")->value, 5.0);
+  EXPECT_TRUE(comparison.trackers[1].metrics.empty());
+  EXPECT_THAT(comparison_json(comparison), HasSubstr("\"turn_found_share\""));
+  EXPECT_THAT(comparison_table(comparison), HasSubstr("turn delay s"));
+}
+
+}  // namespace
+}  // namespace truebearing

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include "truebearing/core/error.hpp"
 #include "truebearing/correction/feature_extractor.hpp"
@@ -22,7 +24,7 @@ struct Row {
 // What one worker needs to make the rows of a run.
 class RowMaker {
  public:
-  RowMaker(const Ensemble& ensemble, const CorrectionSpec& correction)
+  RowMaker(const Ensemble& ensemble, const CorrectionSpec& correction, std::vector<int> truth_index)
       : ensemble_(ensemble.clone()),
         from_step_(correction.training.from_step),
         every_s_(correction.training.every_s),
@@ -30,6 +32,7 @@ class RowMaker {
         reference_(ensemble_.index(correction.reference)),
         source_(ensemble_.index(correction.covariance_of)),
         output_in_sigma_(correction.output_in_sigma),
+        truth_index_(std::move(truth_index)),
         extractor_(correction.features, ensemble_.tracker(base_).space(), correction.frame,
                    [&](const std::string& name) {
                      return ensemble_.tracker(name.empty() ? base_ : ensemble_.index(name)).blocks();
@@ -62,7 +65,8 @@ class RowMaker {
       const FrameRotation& rotation = extractor_.rotation();
       BoundedVector scale = BoundedVector::Ones(base.x.size());
       if (output_in_sigma_) scale = rotation.covariance(base.P).diagonal().cwiseSqrt().cwiseInverse();
-      row.label = scale.cwiseProduct(rotation.vector(recording.truth.front().x[step] - base.x));
+      const BoundedVector truth = recording.truth.front().x[step](truth_index_);
+      row.label = scale.cwiseProduct(rotation.vector(truth - base.x));
       row.reference = scale.cwiseProduct(rotation.vector(reference->x - base.x));
       const auto scaled = [&](const BoundedMatrix& P) -> BoundedMatrix {
         return scale.asDiagonal() * rotation.covariance(P) * scale.asDiagonal();
@@ -86,6 +90,7 @@ class RowMaker {
   int reference_;
   int source_;
   bool output_in_sigma_;
+  std::vector<int> truth_index_;  // of each component of the base's state
   FeatureExtractor extractor_;
   std::vector<int> companions_;
   std::vector<const StepRecord*> companion_records_;
@@ -107,17 +112,21 @@ Eigen::VectorXd mahalanobis_lengths(const Eigen::MatrixXd& errors, const Eigen::
 TeacherSet collect_teacher_set(const Ensemble& ensemble, const CorrectionSpec& correction, const Scenario& scenario,
                                const TeacherOptions& options) {
   const StateSpace& space = ensemble.tracker(ensemble.index(correction.base)).space();
-  if (space != scenario.truth_space())
-    throw InputError("training",
-                     "the scenario's truth is " + scenario.truth_space().name + ", the base's state " + space.name,
-                     "the same state space");
+  std::vector<int> truth_index;
+  for (const std::string& component : space.components) {
+    truth_index.push_back(scenario.truth_space().component_index(component));
+    if (truth_index.back() < 0)
+      throw InputError("training",
+                       "the scenario's truth is " + scenario.truth_space().name + ", the base's state " + space.name,
+                       "a truth that has every component of the state");
+  }
   const std::size_t runs = correction.training.runs;
   std::vector<std::vector<Row>> by_run(runs);
   std::vector<std::optional<RowMaker>> makers(worker_count(options.threads));
   monte_carlo(
       runs, options.threads,
       [&](std::size_t run, std::size_t worker) {
-        if (!makers[worker]) makers[worker].emplace(ensemble, correction);
+        if (!makers[worker]) makers[worker].emplace(ensemble, correction, truth_index);
         by_run[run] = makers[worker]->rows(scenario.simulate({options.seed, options.role, run}));
       },
       options.progress);

@@ -40,7 +40,7 @@ struct TeacherOptions {
 
 /// Runs `ensemble`, which has the members that `correction` names, over correction.training.runs runs of the scenario.
 /// Steps without a record, with unknown truth or with features that are not finite are left out. Throws InputError
-/// where no step is left or the truth is of another space than the base's state.
+/// where no step is left or the truth lacks a component of the base's state, all found by name.
 TeacherSet collect_teacher_set(const Ensemble& ensemble, const CorrectionSpec& correction, const Scenario& scenario,
                                const TeacherOptions& options);
 

@@ -41,8 +41,10 @@ class ScriptedTracker final : public Tracker {
   std::unique_ptr<Tracker> clone() const override { return std::make_unique<ScriptedTracker>(*this); }
   const StateSpace& space() const override { return line_space(); }
   RecordBlocks blocks() const override { return blocks_; }
+  std::span<const TrackEvent> events() const override { return noticed; }
 
   StepRecord record;
+  std::vector<TrackEvent> noticed;
   bool shown = true;
 
  private:
@@ -357,6 +359,16 @@ TEST(Correction, OrderOfTheRulesChangesNothing) {
     ASSERT_LT((first.x - second.x).norm(), 1e-12 * (1.0 + first.x.norm()));
     ASSERT_LT((first.P - second.P).norm(), 1e-12 * first.P.norm());
   }
+}
+
+TEST(Correction, NoticesWhatItsBaseDoes) {
+  Scene s = scene();
+  s.base->noticed = {{TrackEvent::Kind::turn_began, 5.0}};
+  s.reference->noticed = {{TrackEvent::Kind::range_known, 4.0}, {TrackEvent::Kind::handed_over, 6.0}};
+  const CorrectedTracker tracker(
+      std::move(s.ensemble), shared(line_model(kResidual, constant(1, {5.0, -2.0}), "base", "reference", "source")));
+  ASSERT_EQ(tracker.events().size(), 1u);
+  EXPECT_EQ(tracker.events()[0].kind, TrackEvent::Kind::turn_began);
 }
 
 TEST(Correction, MissingMeasurementLeavesNoTrace) {

@@ -167,6 +167,31 @@ TEST(Teacher, DrawsItsOwnRoleOnly) {
   }
 }
 
+TEST(Teacher, TruthMayHaveMoreThanTheBase) {
+  // The truth of a line, in another order and with a bias that the base knows nothing of.
+  class Longer final : public Scenario {
+   public:
+    explicit Longer(const Scenario& scenario) : scenario_(scenario) {}
+    Recording simulate(const RunKey& key) const override {
+      Recording recording = scenario_.simulate(key);
+      recording.truth_space = &truth_space();
+      for (BoundedVector& x : recording.truth[0].x) x = BoundedVector(Eigen::Vector3d(x[1], 77.0, x[0]));
+      return recording;
+    }
+    const StateSpace& truth_space() const override {
+      return state_space_of_components({"velocity_mps", "bias_m", "position_m"});
+    }
+
+   private:
+    const Scenario& scenario_;
+  };
+  const LineScenario scenario = testing::radar_family(12);
+  const TeacherSet set = collect_teacher_set(ensemble(), spec(3), scenario, {});
+  const TeacherSet longer = collect_teacher_set(ensemble(), spec(3), Longer(scenario), {});
+  ASSERT_EQ(longer.Y.cols(), 2);
+  EXPECT_EQ(longer.Y, set.Y);
+}
+
 TEST(Teacher, TruthOfAnotherSpaceIsRefused) {
   class PlaneTruth final : public Scenario {
     Recording simulate(const RunKey&) const override { return {}; }

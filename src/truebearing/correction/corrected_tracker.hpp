@@ -31,6 +31,9 @@ class CorrectedTracker final : public Tracker {
   const StateSpace& space() const override { return *model_->space; }
   RecordBlocks blocks() const override { return ensemble_.tracker(ensemble_.index(model_->base)).blocks(); }
   TrackerCounts counts() const override { return ensemble_.tracker(ensemble_.index(model_->base)).counts(); }
+  std::span<const TrackEvent> events() const override {
+    return ensemble_.tracker(ensemble_.index(model_->base)).events();
+  }
 
   const CorrectionModel& model() const { return *model_; }
 

@@ -36,7 +36,7 @@ constexpr auto kComponent = FeatureNeeds::Component::required;
 constexpr auto kAxis = FeatureNeeds::Component::optional;
 
 // One line per kind: everything the house knows of it besides its formula, which is in feature_extractor.cpp.
-constexpr std::array<Kind, 20> kKinds{{
+constexpr std::array<Kind, 22> kKinds{{
     {FeatureKind::log_step, "log_step", Mirror::even, {.blocks = kNothing}},
     {FeatureKind::gain, "gain", Mirror::even, {.component = kComponent, .blocks = kGain}},
     {FeatureKind::residual, "residual", Mirror::by_component, {.component = kComponent, .blocks = kInnovation}},
@@ -90,6 +90,21 @@ constexpr std::array<Kind, 20> kKinds{{
      "own_velocity",
      Mirror::by_component,
      {.component = kComponent, .velocity = true, .scale = true, .plane = true, .blocks = kNothing}},
+    {FeatureKind::speed_change,
+     "speed_change",
+     Mirror::even,
+     {.companion = kOptional, .alpha = true, .mode = true, .plane = true, .blocks = kModes}},
+    {FeatureKind::velocity_change,
+     "velocity_change",
+     Mirror::by_component,
+     {.component = kComponent,
+      .companion = kOptional,
+      .velocity = true,
+      .alpha = true,
+      .scale = true,
+      .mode = true,
+      .plane = true,
+      .blocks = kModes}},
 }};
 
 const Kind& entry(FeatureKind kind) {
@@ -177,6 +192,11 @@ std::string describe(const FeatureSpec& feature) {
       return "bearing rate" + of;
     case FeatureKind::own_velocity:
       return "own velocity in " + feature.component;
+    case FeatureKind::speed_change:
+      return fmt::format("ln speed{} against that in mode {}, average {}", of, feature.mode, feature.alpha);
+    case FeatureKind::velocity_change:
+      return fmt::format("change{} in {} against mode {}, average {}", of, feature.component, feature.mode,
+                         feature.alpha);
   }
   return {};
 }

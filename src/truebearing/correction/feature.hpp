@@ -32,7 +32,11 @@ enum class FeatureKind {
   log_first_range,  ///< ln of the distance with which the track began, at least 1 m: what was believed; plane space
   log_time,         ///< ln of the time since the track began, at least 1 s
   bearing_rate,     ///< d bearing/dt of the estimate as the sensor sees it from its own course, rad/s; plane space
-  own_velocity      ///< the sensor's velocity[component] / scale; plane space
+  own_velocity,     ///< the sensor's velocity[component] / scale; plane space
+  speed_change,  ///< ln(speed / m), m <- m + alpha mu[mode] (speed - m): against the speed before the target left that
+                 ///< mode; plane space
+  velocity_change  ///< (v - m)[component] / scale, m <- m + alpha mu[mode] (v - m): against the velocity before; plane
+                   ///< space
 };
 
 /// Which feature, and its constants. What a kind does not use stays at its default. Components are those of the frame

@@ -31,8 +31,8 @@ void check(const FeatureSpec& feature, const StateSpace& space, const StateSpace
                                 {components.components.begin() + components.size() / 2, components.components.end()}));
   if (needs.plane && space != plane_space())
     throw InputError(where, "has no meaning in the space " + space.name, "the space plane");
-  if (needs.mode && (feature.mode < 1 || feature.mode > kMaxDimension))
-    throw InputError(where, fmt::format("mode is {}", feature.mode), fmt::format("1 to {}", kMaxDimension));
+  if (needs.mode && (feature.mode < 1 || feature.mode > kMaxModes))
+    throw InputError(where, fmt::format("mode is {}", feature.mode), fmt::format("1 to {}", kMaxModes));
   if (needs.companion == FeatureNeeds::Companion::required && feature.companion.empty())
     throw InputError(where, "names no companion");
   if (needs.alpha && !(feature.alpha > 0.0 && feature.alpha <= 1.0))
@@ -149,6 +149,16 @@ void FeatureExtractor::remember(Term& term, const StepRecord& record) {
     case FeatureKind::log_mean_nis:
       memory[0] += (innovation.nis - memory[0]) / term.used;
       break;
+    case FeatureKind::speed_change:
+    case FeatureKind::velocity_change: {
+      BoundedVector now = record.x.tail<2>();
+      if (term.kind != FeatureKind::velocity_change) now = BoundedVector::Constant(1, now.norm());
+      const bool told = record.mode_probabilities && term.mode < record.mode_probabilities->size();
+      const double stays = told ? (*record.mode_probabilities)[term.mode] : 0.0;
+      if (term.used == 1.0) memory = now;
+      memory += term.alpha * stays * (now - memory);
+      break;
+    }
     case FeatureKind::log_step:
     case FeatureKind::gain:
     case FeatureKind::estimate:
@@ -231,6 +241,12 @@ double FeatureExtractor::value(const Term& term, const StepRecord& base, const S
     }
     case FeatureKind::own_velocity:
       return rotation_.component(own.velocity_mps, c % 2) / term.scale;
+    case FeatureKind::speed_change:
+      if (term.used == 0.0) return 0.0;
+      return std::log(std::max(record.x.tail<2>().norm(), kLeastSpeed_mps) / std::max(term.memory[0], kLeastSpeed_mps));
+    case FeatureKind::velocity_change:
+      if (term.used == 0.0) return 0.0;
+      return rotation_.component(BoundedVector(record.x.tail<2>() - term.memory), c % 2) / term.scale;
   }
   return kNaN;
 }

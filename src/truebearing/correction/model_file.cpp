@@ -117,8 +117,8 @@ FeatureSpec read_feature(ObjectReader object) {
   }
   if (needs.mode) {
     const double mode = object.number("mode");
-    if (!(mode >= 1.0 && mode <= kMaxDimension && mode == std::floor(mode)))
-      throw object.error("mode", fmt::format("is {}", mode), fmt::format("1 to {}", kMaxDimension));
+    if (!(mode >= 1.0 && mode <= kMaxModes && mode == std::floor(mode)))
+      throw object.error("mode", fmt::format("is {}", mode), fmt::format("1 to {}", kMaxModes));
     feature.mode = static_cast<int>(mode);
   }
   object.finish();

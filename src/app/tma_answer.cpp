@@ -1,6 +1,7 @@
 #include "app/tma_answer.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -18,6 +19,10 @@ using Json = nlohmann::ordered_json;
 double compass_deg(double angle_rad) {
   const double angle_deg = std::fmod(degrees(angle_rad), 360.0);
   return angle_deg < 0.0 ? angle_deg + 360.0 : angle_deg;
+}
+
+Json finite(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
 /// A state as seen from own ship.
@@ -71,11 +76,16 @@ std::string row(const char* name, const char* format, double value, double sigma
                      known ? figure(sigma) : "", truth ? figure(*truth) : "");
 }
 
+std::optional<double> true_frequency(const TmaAnswer& answer) {
+  if (!answer.truth || answer.truth->size() < 5 || !std::isfinite((*answer.truth)[4])) return std::nullopt;
+  return (*answer.truth)[4];
+}
+
 std::string motion_table(const TmaAnswer& answer) {
   const Motion motion(answer.estimate.x, answer.own_ship);
   const Sigmas sigma(answer);
   std::optional<Motion> truth;
-  if (answer.truth) truth.emplace(*answer.truth, answer.own_ship);
+  if (answer.truth) truth.emplace(answer.truth->head<4>(), answer.own_ship);
   const auto of_truth = [&](double Motion::*value) { return truth ? std::optional(*truth.*value) : std::nullopt; };
   const auto coordinate = [&](int i) { return answer.truth ? std::optional((*answer.truth)[i]) : std::nullopt; };
   // A prior answers where the bearings do not, and is said to.
@@ -90,10 +100,64 @@ std::string motion_table(const TmaAnswer& answer) {
   text += row("speed m/s", "{:.2f}", motion.speed_mps, sigma.speed_mps, of_truth(&Motion::speed_mps), known);
   text += row("East m", "{:.0f}", x[0], sigmas[0], coordinate(0), known);
   text += row("North m", "{:.0f}", x[1], sigmas[1], coordinate(1), known);
+  if (answer.source && !answer.source->levels.empty()) {
+    const TmaAnswer::Source::Level& last = answer.source->levels.back();
+    text += row("source Hz", "{:.3f}", last.frequency_hz, last.sigma_hz, true_frequency(answer), true);
+  }
   if (!known) return text;
   const Ellipse ellipse(answer.estimate.P);
   return text + fmt::format("95 % ellipse: semi-axes {:.0f} m and {:.0f} m, the longer towards {:.0f} deg\n",
                             ellipse.semi_major_m, ellipse.semi_minor_m, ellipse.orientation_deg);
+}
+
+// A small jump of a tone sounds like a target that changes its velocity.
+std::string manoeuvre_instead(const TmaAnswer::Source& source) {
+  constexpr double kLikely_mps = 20.0;
+  double least_mps = kLikely_mps;
+  for (std::size_t i = 1; i < source.levels.size(); ++i) {
+    const double before_hz = source.levels[i - 1].frequency_hz, change_hz = source.levels[i].frequency_hz - before_hz;
+    least_mps = std::min(least_mps, std::abs(change_hz) / before_hz * source.sound_mps);
+  }
+  if (least_mps >= kLikely_mps) return {};
+  return fmt::format(
+      "Or the target manoeuvred: {:.1f} m/s more or less along the line of sight would have done the same.\n",
+      least_mps);
+}
+
+std::string source_lines(const TmaAnswer& answer) {
+  if (!answer.source) return {};
+  const TmaAnswer::Source& source = *answer.source;
+  std::string text = "\n";
+  for (std::size_t i = 0; i < source.changes.size(); ++i)
+    text += fmt::format("{} at {:g} s, to {:.3f} Hz\n",
+                        i == 0 ? "THE SOURCE CHANGED ITS FREQUENCY" : "                       and again",
+                        source.changes[i].time_s, source.changes[i].frequency_hz);
+  if (!source.looked_for)
+    text += "one frequency of the source is taken for granted\n";
+  else if (source.changes.empty())
+    text += "no sign that the source changed its frequency\n";
+  text += manoeuvre_instead(source);
+  if (!source.used) text += "Because of that the frequencies were left out: the answer is from the bearings alone.\n";
+  text += fmt::format("{:>10}{:>10}{:>14}{:>14}{:>14}\n", "from s", "to s", "source Hz", "std. dev.", "frequencies");
+  for (const TmaAnswer::Source::Level& level : source.levels)
+    text += fmt::format("{:>10g}{:>10g}{:>14.3f}{:>14.4f}{:>14}\n", level.from_s, level.to_s, level.frequency_hz,
+                        level.sigma_hz, level.count);
+  if (source.outliers > 0) text += fmt::format("frequencies that fit none of these: {}\n", source.outliers);
+  return text;
+}
+
+Json source_json(const TmaAnswer::Source& source, int missing) {
+  Json json{{"used", source.used},         {"frequencies", source.frequencies}, {"missing", missing},
+            {"outliers", source.outliers}, {"levels", Json::array()},           {"changes", Json::array()}};
+  for (const TmaAnswer::Source::Level& level : source.levels)
+    json["levels"].push_back({{"from_s", level.from_s},
+                              {"to_s", level.to_s},
+                              {"frequency_hz", level.frequency_hz},
+                              {"standard_deviation_hz", finite(level.sigma_hz)},
+                              {"frequencies", level.count}});
+  for (const FrequencyChange& change : source.changes)
+    json["changes"].push_back({{"time_s", change.time_s}, {"frequency_hz", change.frequency_hz}});
+  return json;
 }
 
 std::string residual_lines(const TmaAnswer& answer) {
@@ -106,7 +170,7 @@ std::string residual_lines(const TmaAnswer& answer) {
   if (checks.manoeuvred)
     text += fmt::format(
         "THE TARGET SEEMS TO HAVE CHANGED ITS VELOCITY at about {:g} s (score {:.0f}): one course and speed do not\n"
-        "explain these bearings, and the figures above average over several. Try --from {:g}.\n",
+        "explain these measurements, and the figures above average over several. Try --from {:g}.\n",
         checks.manoeuvre_s, checks.manoeuvre, checks.manoeuvre_s);
   else
     text += "no sign that the target changed its velocity\n";
@@ -116,7 +180,9 @@ std::string residual_lines(const TmaAnswer& answer) {
 std::string open_range_lines(const TmaAnswer& answer) {
   if (answer.range_is_known()) return {};
   const Observability& geometry = *answer.observability;
-  std::string text = "\nTHE BEARINGS DO NOT DETERMINE THE RANGE: ";
+  std::string text = answer.source && answer.source->used
+                         ? "\nTHE BEARINGS AND FREQUENCIES DO NOT DETERMINE THE RANGE: "
+                         : "\nTHE BEARINGS DO NOT DETERMINE THE RANGE: ";
   if (geometry.log_range_sigma > 10.0)
     text += "own ship has not manoeuvred in a way that shows.\n";
   else
@@ -159,16 +225,16 @@ Json motion_json(const Eigen::Vector4d& x, const SensorState& own_ship) {
           {"north_mps", x[3]}};
 }
 
-Json finite(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 }  // namespace
 
 std::string tma_text(const TmaAnswer& answer) {
-  std::string text = fmt::format("{}: {} bearings from {:g} to {:g} s, {} missing; method {}\n\n", answer.log,
-                                 answer.bearings, answer.from_s, answer.estimate.time_s, answer.missing, answer.method);
-  return text + motion_table(answer) + open_range_lines(answer) + ambiguity_lines(answer) + residual_lines(answer);
+  std::string text = fmt::format("{}: {} bearings from {:g} to {:g} s, {} missing; ", answer.log, answer.bearings,
+                                 answer.from_s, answer.estimate.time_s, answer.missing);
+  if (answer.source)
+    text += fmt::format("{} frequencies, {} missing; ", answer.source->frequencies, answer.missing_frequencies);
+  text += fmt::format("method {}\n\n", answer.method);
+  return text + motion_table(answer) + open_range_lines(answer) + ambiguity_lines(answer) + source_lines(answer) +
+         residual_lines(answer);
 }
 
 std::string tma_json(const TmaAnswer& answer) {
@@ -202,6 +268,13 @@ std::string tma_json(const TmaAnswer& answer) {
   json["ellipse95"] = {{"semi_major_m", finite(ellipse.semi_major_m)},
                        {"semi_minor_m", finite(ellipse.semi_minor_m)},
                        {"orientation_deg", finite(ellipse.orientation_deg)}};
+  if (answer.source) {
+    json["source"] = source_json(*answer.source, answer.missing_frequencies);
+    if (!answer.source->levels.empty()) {
+      json["estimate"]["frequency_hz"] = answer.source->levels.back().frequency_hz;
+      json["standard_deviation"]["frequency_hz"] = finite(answer.source->levels.back().sigma_hz);
+    }
+  }
   if (answer.observability) {
     const Eigen::Vector4d& worst = answer.observability->worst;
     json["observability"] = {{"rank", answer.observability->rank},
@@ -229,7 +302,8 @@ std::string tma_json(const TmaAnswer& answer) {
   }
   json["hypotheses"] = Json::array();
   for (const Eigen::Vector4d& x : answer.hypotheses) json["hypotheses"].push_back(motion_json(x, answer.own_ship));
-  if (answer.truth) json["truth"] = motion_json(*answer.truth, answer.own_ship);
+  if (answer.truth) json["truth"] = motion_json(answer.truth->head<4>(), answer.own_ship);
+  if (const auto frequency_hz = true_frequency(answer)) json["truth"]["frequency_hz"] = *frequency_hz;
   return json_text(json);
 }
 

@@ -1,15 +1,21 @@
 // truebearing track STUDY.toml LOG.csv: the study's trackers on a recorded log. With truth in the log, their errors;
-// without, what can still be said: NIS and its consistency, whiteness, rejected and missing measurements.
+// without, what can still be said: NIS and its consistency, whiteness, rejected and missing measurements. And what the
+// trackers noticed beside their estimates.
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <map>
 #include <memory>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "app/output.hpp"
 #include "app/subcommands.hpp"
 #include "truebearing/evaluation/innovation_consistency.hpp"
 #include "truebearing/evaluation/report.hpp"
+#include "truebearing/evaluation/text_table.hpp"
+#include "truebearing/io/csv.hpp"
 #include "truebearing/measurement/geographic_track.hpp"
 #include "truebearing/measurement/recording_csv.hpp"
 #include "truebearing/study/study.hpp"
@@ -25,6 +31,7 @@ struct Options {
   std::string log;
   std::string output;
   std::string json;
+  std::string events;
 };
 
 // The tracks of a log: one, or as many as a step log has.
@@ -87,6 +94,42 @@ void print_consistency(const TrackerSet& trackers, const std::vector<InnovationC
           trackers.name(i));
 }
 
+// What each tracker noticed, track by track.
+class EventLog {
+ public:
+  void add(const std::string& tracker, std::span<const TrackEvent> events) {
+    for (const TrackEvent& event : events) lines_.push_back({tracker, event});
+  }
+  bool empty() const { return lines_.empty(); }
+
+  std::string table() const {
+    std::vector<std::vector<std::string>> rows{{"tracker", "time s", "event", "value"}};
+    for (const auto& [tracker, event] : lines_)
+      rows.push_back({tracker, fmt::format("{:g}", event.time_s), std::string(to_string(event.kind)),
+                      std::isfinite(event.value) ? fmt::format("{:g}", event.value) : ""});
+    return aligned(rows);
+  }
+
+  std::string csv() const {
+    CsvWriter csv({"tracker", "time_s", "event", "value"});
+    for (const auto& [tracker, event] : lines_) {
+      csv.text(tracker);
+      csv.number(event.time_s);
+      csv.text(std::string(to_string(event.kind)));
+      csv.number(event.value);
+      csv.end_row();
+    }
+    return csv.str();
+  }
+
+ private:
+  struct Line {
+    std::string tracker;
+    TrackEvent event;
+  };
+  std::vector<Line> lines_;
+};
+
 // The log's own measurements as the runs of a comparison, one per track.
 class LogScenario final : public Scenario {
  public:
@@ -115,6 +158,7 @@ void track(const Options& options) {
   const auto entries = static_cast<std::size_t>(trackers.size());
   std::vector<InnovationConsistency> consistency(entries);
   std::vector<TrackerCounts> counts(entries);
+  EventLog events;
   Recording::Counts rows;
   std::size_t measurements = 0;
   for (const auto& [number, recording] : tracks) {
@@ -129,17 +173,21 @@ void track(const Options& options) {
           writer.add(trackers.name(i), record);
         }
     }
-    for (int i = 0; i < trackers.size(); ++i) add(counts[static_cast<std::size_t>(i)], trackers.counts(i));
+    for (int i = 0; i < trackers.size(); ++i) {
+      add(counts[static_cast<std::size_t>(i)], trackers.counts(i));
+      events.add(trackers.name(i), trackers.events(i));
+    }
     measurements += recording.measurements.size();
     rows.missing += recording.counts.missing;
     rows.repeated += recording.counts.repeated;
   }
   if (tracks.size() > 1) writer.sort_by_time();
-  const bool to_stdout = options.output == "-" || options.json == "-";
+  const bool to_stdout = options.output == "-" || options.json == "-" || options.events == "-";
   if (!to_stdout) {
     fmt::print("{}: {} measurements, {} missing, {} repeated rows dropped\n\n", options.log, measurements, rows.missing,
                rows.repeated);
     print_consistency(trackers, consistency, counts);
+    if (!events.empty()) fmt::print("\n{}", events.table());
   }
   if (tracks.front().recording.truth_space) {
     ComparisonOptions comparison_options = study.comparison_options();
@@ -154,6 +202,7 @@ void track(const Options& options) {
     throw InputError(options.log, "has no truth to score against", "columns truth_<component>, or no --json");
   }
   if (!options.output.empty()) write_output(options.output, writer.str());
+  if (!options.events.empty()) write_output(options.events, events.csv());
 }
 
 }  // namespace
@@ -169,6 +218,8 @@ void add_track(CLI::App& app) {
   command->add_option("-o,--output", options->output, "write the trackers' step records as CSV; - is standard output");
   command->add_option("--json", options->json,
                       "write the scores as JSON, where the log has truth; - is standard output");
+  command->add_option("--events", options->events,
+                      "write what the trackers noticed (turns, a source's jumps, ...) as CSV; - is standard output");
   command->callback([options] { track(*options); });
 }
 

@@ -37,6 +37,16 @@ TEST(Program, WrongUsageIsStatus2) {
   }
 }
 
+TEST(Program, TrackWritesWhatTrackersNoticed) {
+  const TemporaryFolder folder;
+  write_study(folder);
+  folder.write("plain.toml", kStudy.substr(0, kStudy.find("[trackers.tuned]")).replace(kStudy.find("pairs"), 24, ""));
+  folder.write("good.csv", "time_s,position_m\n1,100\n2,110\n");
+  const Outcome none = run(folder, "track plain.toml good.csv --events -");
+  EXPECT_EQ(none.status, 0) << none.err;
+  EXPECT_EQ(none.out, "tracker,time_s,event,value\n") << "a filter notices nothing";
+}
+
 TEST(Program, HelpAndVersionAreStatus0) {
   const TemporaryFolder folder;
   for (const char* fine : {"--help", "--version", "compare --help"}) {

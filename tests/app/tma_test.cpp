@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/app/program.hpp"
+#include "tests/support/bearing_frequency_runs.hpp"
 #include "tests/support/bearing_runs.hpp"
 #include "truebearing/measurement/recording_csv.hpp"
 
@@ -14,8 +15,8 @@ namespace {
 using nlohmann::json;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using ::testing::Not;
 using testing::is_one_line;
+using ::testing::Not;
 using testing::Outcome;
 using testing::run;
 using testing::TemporaryFolder;
@@ -86,6 +87,89 @@ TEST(TmaCommand, ReportsAManoeuvreInsideTheWindow) {
   const json answer = json::parse(run(folder, "tma logs/run_0000.csv --json -").out);
   EXPECT_NEAR(answer["manoeuvre"]["time_s"].get<double>(), 1000.0, 150.0);
   EXPECT_FALSE(json::parse(run(folder, "tma logs/run_0000.csv --to 900 --json -").out)["manoeuvre"]["detected"]);
+}
+
+// Kim and Song's scenario with frequencies, as a log with truth; every tenth frequency is missing.
+std::string frequency_log(const std::function<double(double)>& f0_hz, bool with_velocity = true) {
+  using testing::KimSong;
+  RandomStream stream({1, Role::evaluation, 0}, StreamId::test);
+  Recording recording;
+  recording.measured = {"bearing_deg", "frequency_hz"};
+  recording.truth_space = &plane_frequency_space();
+  recording.truth.resize(1);
+  int k = 0;
+  for (double t = 0.0; t <= KimSong::kEnd_s; t += KimSong::kPeriod_s) {
+    Measurement measurement{.time_s = t,
+                            .z = KimSong::measured(t, f0_hz(t), 1.0, stream),
+                            .sigma = Eigen::Vector2d(KimSong::kSigma_rad, KimSong::kSigma_hz),
+                            .sensor = KimSong::own_ship(t)};
+    if (++k % 10 == 0) measurement.z[1] = std::nan("");
+    if (!with_velocity) measurement.sensor->velocity_mps.setZero();
+    recording.measurements.push_back(measurement);
+    BoundedVector x(5);
+    x << KimSong::target(t), f0_hz(t);
+    recording.truth[0].x.push_back(x);
+  }
+  return write_recording(recording);
+}
+
+TEST(TmaCommand, UsesFrequenciesAndSaysWhatTheSourceSends) {
+  const TemporaryFolder folder;
+  folder.write("log.csv", frequency_log(testing::jump(0.0)));
+  const Outcome text = run(folder, "tma log.csv");
+  EXPECT_EQ(text.status, 0) << text.err;
+  EXPECT_THAT(text.out, AllOf(HasSubstr("136 frequencies, 15 missing"), HasSubstr("source Hz"),
+                              HasSubstr("no sign that the source changed"), Not(HasSubstr("CHANGED"))));
+  const json answer = json::parse(run(folder, "tma log.csv --json -").out);
+  const json only_bearings = json::parse(run(folder, "tma log.csv --bearings-only --json -").out);
+  EXPECT_NEAR(answer["estimate"]["frequency_hz"].get<double>(), answer["truth"]["frequency_hz"].get<double>(), 0.05);
+  EXPECT_LT(2.0 * answer["standard_deviation"]["range_m"].get<double>(),
+            only_bearings["standard_deviation"]["range_m"].get<double>());
+  EXPECT_TRUE(answer["source"]["used"]);
+  EXPECT_FALSE(only_bearings.contains("source"));
+  EXPECT_EQ(answer["residuals"]["degrees_of_freedom"], 151 + 136 - 5);
+}
+
+TEST(TmaCommand, SaysClearlyWhenTheSourceChanged) {
+  const TemporaryFolder folder;
+  folder.write("log.csv", frequency_log(testing::jump(30.0, 600.0, 800.0)));
+  const Outcome text = run(folder, "tma log.csv");
+  EXPECT_EQ(text.status, 0) << text.err;
+  EXPECT_THAT(text.out, AllOf(HasSubstr("THE SOURCE CHANGED ITS FREQUENCY at 602 s"), HasSubstr("and again at 805 s")));
+  const json answer = json::parse(run(folder, "tma log.csv --json -").out);
+  ASSERT_EQ(answer["source"]["changes"].size(), 2u);
+  EXPECT_EQ(answer["source"]["changes"][0]["time_s"], 602.0);
+  EXPECT_NEAR(answer["source"]["changes"][0]["frequency_hz"].get<double>(), 130.0, 0.1);
+  ASSERT_EQ(answer["source"]["levels"].size(), 3u);
+  EXPECT_EQ(answer["source"]["levels"][0]["frequency_hz"], answer["source"]["levels"][2]["frequency_hz"]);
+  EXPECT_THAT(run(folder, "tma log.csv --frequency-changes switch").out, HasSubstr("bearings alone"));
+  EXPECT_THAT(run(folder, "tma log.csv --frequency-changes ignored").out, HasSubstr("taken for granted"));
+  const json ignored = json::parse(run(folder, "tma log.csv --frequency-changes ignored --json -").out);
+  EXPECT_FALSE(ignored["residuals"]["fits"]);
+}
+
+TEST(TmaCommand, SaysThatASmallJumpMayBeAManoeuvre) {
+  const TemporaryFolder folder;
+  folder.write("small.csv", frequency_log(testing::jump(0.06, 600.0, 800.0)));
+  folder.write("large.csv", frequency_log(testing::jump(30.0, 600.0, 800.0)));
+  EXPECT_THAT(run(folder, "tma small.csv").out,
+              AllOf(HasSubstr("THE SOURCE CHANGED ITS FREQUENCY"), HasSubstr("Or the target manoeuvred: ")));
+  EXPECT_THAT(run(folder, "tma large.csv").out, Not(HasSubstr("Or the target manoeuvred")));
+}
+
+TEST(TmaCommand, FrequenciesThatCannotBeUsedAreOneLineErrors) {
+  const TemporaryFolder folder;
+  folder.write("log.csv", frequency_log(testing::jump(0.0)));
+  folder.write("still.csv", frequency_log(testing::jump(0.0), false));
+  for (const auto& [arguments, word] : std::vector<std::pair<std::string, std::string>>{
+           {"log.csv --method gauss_newton", "--bearings-only"}, {"still.csv", "sensor_east_mps"}}) {
+    const Outcome outcome = run(folder, "tma " + arguments);
+    EXPECT_EQ(outcome.status, 1) << arguments;
+    EXPECT_TRUE(is_one_line(outcome.err)) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(word));
+  }
+  EXPECT_EQ(run(folder, "tma log.csv --method gauss_newton --bearings-only").status, 0);
+  EXPECT_EQ(run(folder, "tma still.csv --bearings-only").status, 0);
 }
 
 TEST(TmaCommand, BadLogsAreOneLineErrors) {

@@ -5,37 +5,19 @@
 #include <string>
 #include <vector>
 
-#include "truebearing/study/study.hpp"
+#include "tests/support/comparisons.hpp"
 
 namespace truebearing {
 namespace {
 
-Study load(const std::string& name) {
-  return Study::load(std::string(TRUEBEARING_SOURCE_DIR "/data/studies/") + name + ".toml");
-}
-
-// Some of a study's trackers, none of them corrected.
-Comparison run(const Study& study, const std::vector<std::string>& names, std::size_t runs) {
-  TrackerSet trackers(study.make_ensemble(names));
-  for (const std::string& name : names) trackers.show_member(name);
-  ComparisonOptions options = study.comparison_options();
-  options.runs = runs;
-  options.seed = 20;
-  options.pairs.clear();
-  return compare(trackers, study.evaluation_scenarios(), options);
-}
-
-Metric metric(const Comparison& comparison, const std::string& tracker, const std::string& name, double time_s) {
-  for (const Metric& entry : comparison.tracker(tracker)->metrics)
-    if (entry.name == name && (!entry.time_s || *entry.time_s == time_s)) return entry;
-  ADD_FAILURE() << tracker << " has no " << name << " at " << time_s;
-  return {};
-}
+using testing::load_study;
+using testing::metric;
+using testing::run_members;
 
 class ChoScenario : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(ChoScenario, MaximumLikelihoodIsEfficientAndThePapersMethodIsNot) {
-  const Comparison comparison = run(load(GetParam()), {"levenberg_marquardt", "ml", "map"}, 60);
+  const Comparison comparison = run_members(load_study(GetParam()), {"levenberg_marquardt", "ml", "map"}, 60);
   for (const double time_s : {1000.0, 1800.0, 3600.0}) {
     const Metric efficiency = metric(comparison, "ml", "range_efficiency", time_s);
     EXPECT_GT(efficiency.value, 0.9 - 2.0 * efficiency.se) << time_s;
@@ -55,12 +37,12 @@ TEST_P(ChoScenario, MaximumLikelihoodIsEfficientAndThePapersMethodIsNot) {
 INSTANTIATE_TEST_SUITE_P(Cho2015, ChoScenario, ::testing::Values("cho_s1", "cho_s2", "cho_s3"));
 
 TEST(BearingsOnly, ThreeStartsFindTheGlobalMinimum) {
-  const Comparison comparison = run(load("bearings_only_observable"), {"ml", "ml_225"}, 150);
+  const Comparison comparison = run_members(load_study("bearings_only_observable"), {"ml", "ml_225"}, 150);
   EXPECT_EQ(metric(comparison, "ml", "global_minimum_share", 0.0).value, 1.0);
 }
 
 TEST(BearingsOnly, PublishedBenchmarkIsReached) {
-  const Comparison comparison = run(load("bearings_only_m"), {"ekf", "range_ekf", "map"}, 400);
+  const Comparison comparison = run_members(load_study("bearings_only_m"), {"ekf", "range_ekf", "map"}, 400);
   const double times_s[] = {1200.0, 1500.0, 1920.0}, range_ekf_m[] = {155.0, 71.0, 108.0};
   for (int i = 0; i < 3; ++i) {
     const Metric bank = metric(comparison, "range_ekf", "position_rmse", times_s[i]);
@@ -73,7 +55,7 @@ TEST(BearingsOnly, PublishedBenchmarkIsReached) {
 // 600 of the 4000 runs that the bars are meant for: too few to tell the correction from the bank of six, not from the
 // filter that it corrects. The coverage of runs whose steps hang together has a standard error of .006.
 TEST(BearingsOnly, CorrectionWithALogPolarCompanionReachesItsBars) {
-  const Study study = load("bearings_only_family");
+  const Study study = load_study("bearings_only_family");
   TrackerSet trackers(study.make_ensemble({"ekf", "log_polar", "bank_6"}));
   trackers.show_member("ekf");
   trackers.show_member("bank_6");

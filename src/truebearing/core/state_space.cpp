@@ -5,6 +5,7 @@
 #include <deque>
 #include <mutex>
 
+#include "truebearing/core/angle.hpp"
 #include "truebearing/core/bounded.hpp"
 #include "truebearing/core/error.hpp"
 
@@ -39,19 +40,25 @@ const StateSpace& plane_frequency_space() {
   return space;
 }
 
+const StateSpace& angle_space() {
+  static const StateSpace space{
+      "angle", {"angle_rad", "rate_radps"}, {{"angle_deg", {0}, degrees(1.0)}, {"rate_degps", {1}, degrees(1.0)}}};
+  return space;
+}
+
 bool begins_in_plane(const StateSpace& space) {
   const std::vector<std::string>& plane = plane_space().components;
   return space.components.size() >= plane.size() && std::equal(plane.begin(), plane.end(), space.components.begin());
 }
 
 const StateSpace* find_state_space(std::string_view name) {
-  for (const StateSpace* space : {&line_space(), &plane_space(), &plane_frequency_space()})
+  for (const StateSpace* space : {&line_space(), &plane_space(), &plane_frequency_space(), &angle_space()})
     if (space->name == name) return space;
   return nullptr;
 }
 
 const StateSpace& state_space_of_components(const std::vector<std::string>& components) {
-  for (const StateSpace* space : {&line_space(), &plane_space(), &plane_frequency_space()})
+  for (const StateSpace* space : {&line_space(), &plane_space(), &plane_frequency_space(), &angle_space()})
     if (space->components == components) return *space;
   if (components.empty() || components.size() > kMaxDimension)
     throw InputError("state", "has " + std::to_string(components.size()) + " components",

@@ -11,6 +11,7 @@ namespace truebearing {
 struct Quantity {
   std::string name;          ///< with its unit: "position_m"
   std::vector<int> indices;  ///< components of the state that make it up
+  double scale = 1.0;        ///< from the unit of the components to that of the quantity
   bool operator==(const Quantity&) const = default;
 };
 
@@ -32,6 +33,8 @@ const StateSpace& line_space();
 const StateSpace& plane_space();
 /// [east_m, north_m, east_mps, north_mps, frequency_hz]: the same, and the frequency that the target radiates.
 const StateSpace& plane_frequency_space();
+/// [angle_rad, rate_radps]: the direction to a target, and its rate; reported in degrees.
+const StateSpace& angle_space();
 /// True where a state begins with the components of plane_space().
 bool begins_in_plane(const StateSpace& space);
 

@@ -5,7 +5,7 @@ namespace truebearing {
 std::string unit_of(const std::string& quantity) {
   const std::size_t underscore = quantity.rfind('_');
   const std::string unit = underscore == std::string::npos ? "" : quantity.substr(underscore + 1);
-  return unit == "mps" ? "m/s" : unit == "hz" ? "Hz" : unit;
+  return unit == "mps" ? "m/s" : unit == "degps" ? "deg/s" : unit == "hz" ? "Hz" : unit;
 }
 
 std::string name_of(const std::string& quantity) {

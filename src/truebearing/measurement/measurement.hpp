@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "truebearing/core/bounded.hpp"
+#include "truebearing/measurement/snapshot_block.hpp"
 
 namespace truebearing {
 
@@ -33,6 +34,8 @@ struct Measurement {
   std::optional<TargetGuess> guess{};
   /// What a tracker that ran elsewhere made of this measurement, where a step log tells; owned by the Recording.
   const StepRecord* recorded = nullptr;
+  /// Of a line array, which has no z; the values are owned by the Recording.
+  std::optional<SnapshotBlock> snapshots{};
 
   /// True where z lacks a value: all of it, but for sensors that can do with a part (bearing_frequency_sensor.hpp).
   bool is_missing() const { return z.size() == 0 || !z.allFinite(); }

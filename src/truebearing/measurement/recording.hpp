@@ -2,6 +2,7 @@
 // recordings and measurement logs are read into them, so that trackers cannot tell the two apart.
 #pragma once
 
+#include <complex>
 #include <memory>
 #include <optional>
 #include <string>
@@ -26,7 +27,8 @@ struct Truth {
 };
 
 struct Recording {
-  std::vector<std::string> measured;  ///< names of the components of z with units: "position_m"
+  /// Names of the components of z with units: "position_m"; of a line array "snapshots".
+  std::vector<std::string> measured;
   std::vector<Measurement> measurements;
   const StateSpace* truth_space = nullptr;  ///< nullptr where there is no truth
   std::vector<Truth> truth;                 ///< one per target; each as long as `measurements`
@@ -39,6 +41,8 @@ struct Recording {
     int glitches = 0;  ///< of the missing, those whose position implied an impossible speed
   } counts;
 
+  /// Owns the values of the measurements' snapshots; nothing where there are none.
+  std::shared_ptr<const std::vector<std::complex<double>>> snapshots;
   std::shared_ptr<const StepLog> steps;  ///< owns what `recorded` of the measurements points to; mostly empty
 };
 

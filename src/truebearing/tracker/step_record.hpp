@@ -43,6 +43,15 @@ struct BatchOutcome {
   int non_finite_starts = 0;  ///< of them, those that ended in numbers that are not finite
 };
 
+/// The nearest other target that the tracker follows.
+struct Neighbour {
+  int track = 0;
+  BoundedVector difference;  ///< its estimate minus this one (n)
+  double closeness =
+      0.0;  ///< 1 / (1 + s^2), s the distance in what the sensor can resolve: in (0, 1], 1 at the same place
+  bool merged = false;  ///< so close that the measurement cannot tell the two apart
+};
+
 struct StepRecord {
   int track = 0;
   double time_s = 0.0;
@@ -56,6 +65,7 @@ struct StepRecord {
   std::optional<BoundedMatrix> gain;             ///< K (n x m)
   std::optional<ModeVector> mode_probabilities;  ///< of a multiple-model tracker
   std::optional<SensorState> sensor;
+  std::optional<Neighbour> neighbour;           ///< of a tracker of several targets, where it follows another
   std::optional<CorrectionOutcome> correction;  ///< of a corrected tracker
   std::optional<BatchOutcome> batch;            ///< of a batch estimator, at steps at which it solved
 };

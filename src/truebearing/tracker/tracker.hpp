@@ -26,6 +26,7 @@ struct RecordBlocks {
   bool innovation = false;
   bool gain = false;
   bool mode_probabilities = false;
+  bool neighbour = false;          ///< of every record while another target is followed
   bool measures_position = false;  ///< the innovation's z is the position, the first half of the state
 };
 

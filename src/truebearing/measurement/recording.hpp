@@ -24,6 +24,8 @@ struct Truth {
                            ///< empty where that is not told
   /// When it first leaves its course; infinite where it keeps it to the end, nothing where that is not told.
   std::optional<double> turns_at_s = std::nullopt;
+  /// Of what an array hears of it: the power of its signal over that of a sensor's noise.
+  std::optional<double> snr = std::nullopt;
 };
 
 struct Recording {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "truebearing/simulation/bearings_only_scenario.hpp"
+#include "truebearing/simulation/line_array_scenario.hpp"
 #include "truebearing/simulation/line_scenario.hpp"
 #include "truebearing/simulation/planar_flight_scenario.hpp"
 #include "truebearing/simulation/planar_legs_scenario.hpp"
@@ -17,10 +18,12 @@ struct ScenarioKind {
   const char* name;
   std::unique_ptr<Scenario> (*read)(TableReader&);
 };
-constexpr std::array kKinds{
-    ScenarioKind{"line", read_line_scenario}, ScenarioKind{"planar_flight", read_planar_flight_scenario},
-    ScenarioKind{"planar_legs", read_planar_legs_scenario}, ScenarioKind{"bearings_only", read_bearings_only_scenario},
-    ScenarioKind{"passive_sonar", read_passive_sonar_scenario}};
+constexpr std::array kKinds{ScenarioKind{"line", read_line_scenario},
+                            ScenarioKind{"planar_flight", read_planar_flight_scenario},
+                            ScenarioKind{"planar_legs", read_planar_legs_scenario},
+                            ScenarioKind{"bearings_only", read_bearings_only_scenario},
+                            ScenarioKind{"passive_sonar", read_passive_sonar_scenario},
+                            ScenarioKind{"line_array", read_line_array_scenario}};
 
 }  // namespace
 

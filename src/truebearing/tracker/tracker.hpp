@@ -37,7 +37,9 @@ struct TrackEvent {
     handed_over,     ///< a batch estimate began a filter
     source_changed,  ///< the target's frequency jumped; `value`: to so many Hz
     turn_began,      ///< the target left its course or speed
-    turn_ended
+    turn_ended,
+    track_began,  ///< of a target that appeared; `value`: the track's number
+    track_ended   ///< of one that is not heard any more
   };
   Kind kind;
   double time_s;  ///< of the event itself, at or before the step that noticed it
@@ -56,6 +58,10 @@ constexpr std::string_view to_string(TrackEvent::Kind kind) {
       return "turn_began";
     case TrackEvent::Kind::turn_ended:
       return "turn_ended";
+    case TrackEvent::Kind::track_began:
+      return "track_began";
+    case TrackEvent::Kind::track_ended:
+      return "track_ended";
   }
   return "unknown";
 }

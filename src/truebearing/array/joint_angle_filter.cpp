@@ -1,0 +1,241 @@
+#include "truebearing/array/joint_angle_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace truebearing {
+namespace {
+
+// A = L L' in the lower triangle, in place. False where A is not positive definite.
+bool factorise(SignalMatrix& A) {
+  const Eigen::Index n = A.rows();
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (Eigen::Index k = 0; k < j; ++k) {
+      const double factor = A(j, k);
+      for (Eigen::Index i = j; i < n; ++i) A(i, j) -= A(i, k) * factor;
+    }
+    if (!(A(j, j) > 0.0)) return false;
+    const double inverse = 1.0 / std::sqrt(A(j, j));
+    for (Eigen::Index i = j; i < n; ++i) A(i, j) *= inverse;
+  }
+  return true;
+}
+
+// X <- L^-1 X
+template <typename Columns>
+void solve_lower(const SignalMatrix& L, Columns& X) {
+  const Eigen::Index n = L.rows();
+  for (Eigen::Index c = 0; c < X.cols(); ++c)
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const double x = X(j, c) / L(j, j);
+      X(j, c) = x;
+      for (Eigen::Index i = j + 1; i < n; ++i) X(i, c) -= L(i, j) * x;
+    }
+}
+
+// x <- L^-T x
+void solve_upper(const SignalMatrix& L, SignalVector& x) {
+  for (Eigen::Index j = L.rows() - 1; j >= 0; --j) {
+    for (Eigen::Index i = j + 1; i < L.rows(); ++i) x[j] -= L(i, j) * x[i];
+    x[j] /= L(j, j);
+  }
+}
+
+double log_determinant(const SignalMatrix& L) {
+  return 2.0 * L.diagonal().array().log().sum();
+}
+
+constexpr double kLargestAngle_rad = 1.55;  // short of end-fire, where angles are no coordinates
+constexpr double kLargestLogPower = 18.0;   // 80 dB
+constexpr double kLargestStep_rad = 0.06;   // of one iteration, about half a beam
+constexpr double kLargestLogPowerStep = 1.5;
+constexpr double kConverged = 1e-4;  // squared step, in standard deviations of the prior
+
+}  // namespace
+
+double JointAngleMotion::q_after(double nis) const {
+  const double bounded = std::max(nis, 0.3);
+  return std::clamp(q0 * bounded * bounded * bounded, q_low, q_high);
+}
+
+void predict(JointAngleState& state, const JointAngleMotion& motion, double dt_s) {
+  const int N = state.targets();
+  SignalVector& x = state.x;
+  SignalMatrix& P = state.P;
+  const int r = 2 * N;
+  for (int n = 0; n < N; ++n) x[n] = std::clamp(x[n] + dt_s * x[r + n], -kLargestAngle_rad, kLargestAngle_rad);
+  for (int j = 0; j < 3 * N; ++j)  // rows: F P
+    for (int n = 0; n < N; ++n) P(n, j) += dt_s * P(r + n, j);
+  for (int n = 0; n < N; ++n)  // columns: F P F'
+    for (int i = 0; i < 3 * N; ++i) P(i, n) += dt_s * P(i, r + n);
+  for (int n = 0; n < N; ++n) {
+    const double q = state.q[n];
+    P(n, n) += q * dt_s * dt_s * dt_s / 3.0;
+    P(n, r + n) += q * dt_s * dt_s / 2.0;
+    P(r + n, n) += q * dt_s * dt_s / 2.0;
+    P(r + n, r + n) += q * dt_s;
+    P(N + n, N + n) += motion.log_power_variance_per_s * dt_s;
+  }
+}
+
+namespace {
+
+// The same state with its targets where `place` says, of those that were; -1 for one that was not there.
+template <typename Place>
+JointAngleState rearranged(const JointAngleState& state, int targets, const Place& place) {
+  const int N = state.targets();
+  JointAngleState other;
+  other.x.setZero(3 * targets);
+  other.P.setZero(3 * targets, 3 * targets);
+  other.q.setZero(targets);
+  const auto from = [&](int i) { return place(i % targets) < 0 ? -1 : i / targets * N + place(i % targets); };
+  for (int i = 0; i < 3 * targets; ++i) {
+    if (from(i) < 0) continue;
+    other.x[i] = state.x[from(i)];
+    for (int j = 0; j < 3 * targets; ++j)
+      if (from(j) >= 0) other.P(i, j) = state.P(from(i), from(j));
+  }
+  for (int n = 0; n < targets; ++n)
+    if (place(n) >= 0) other.q[n] = state.q[place(n)];
+  return other;
+}
+
+}  // namespace
+
+void add_target(JointAngleState& state, const NewTarget& target) {
+  const int N = state.targets();
+  state = rearranged(state, N + 1, [&](int n) { return n < N ? n : -1; });
+  const int angle = N, log_power = N + 1 + N, rate = 2 * (N + 1) + N;
+  state.x[angle] = target.angle_rad;
+  state.x[log_power] = target.log_power;
+  state.P(angle, angle) = target.angle_sigma_rad * target.angle_sigma_rad;
+  state.P(log_power, log_power) = target.log_power_sigma * target.log_power_sigma;
+  state.P(rate, rate) = target.rate_sigma_radps * target.rate_sigma_radps;
+  state.q[N] = target.q;
+}
+
+void remove_target(JointAngleState& state, int n) {
+  state = rearranged(state, state.targets() - 1, [&](int i) { return i < n ? i : i + 1; });
+}
+
+void order_of_angles(const JointAngleState& state, std::array<int, kMaxSignals>& order) {
+  const auto end = order.begin() + state.targets();
+  std::iota(order.begin(), end, 0);
+  std::sort(order.begin(), end, [&](int a, int b) { return state.x[a] < state.x[b]; });
+}
+
+void sort_targets(JointAngleState& state) {
+  std::array<int, kMaxSignals> order{};
+  order_of_angles(state, order);
+  state = rearranged(state, state.targets(), [&](int n) { return order[static_cast<std::size_t>(n)]; });
+}
+
+bool JointAngleUpdate::run(const JointAngleState& prior, const RealInterval& interval, double middle_s,
+                           const SignalVector& start, const Options& options, JointAngleState& posterior) {
+  const int N = prior.targets(), n = 2 * N;
+  if (N == 0) {
+    posterior = prior;
+    log_evidence_ = 0.0;
+    return likelihood_.evaluate(interval, SignalVector(0), nullptr, middle_s, options.noise_power);
+  }
+  const SignalVector m0 = prior.x.head(n), rate = prior.x.tail(N);
+  L_ = prior.P.topLeftCorner(n, n);
+  if (!factorise(L_)) return false;
+  m_ = start;
+  u_ = m_ - m0;
+  {
+    Eigen::Map<Eigen::MatrixXd> column(u_.data(), n, 1);
+    solve_lower(L_, column);
+  }
+
+  for (int iteration = 0;; ++iteration) {
+    if (!likelihood_.evaluate(interval, m_, options.moving ? &rate : nullptr, middle_s, options.noise_power))
+      return false;
+    // B = I + L' J L and the step, B step = L' g - u.
+    const SignalMatrix& J = likelihood_.information();
+    const SignalVector& g = likelihood_.gradient();
+    U_.resize(n, n);  // J L
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) {
+        double sum = 0.0;
+        for (int k = j; k < n; ++k) sum += J(k, i) * L_(k, j);
+        U_(i, j) = sum;
+      }
+    B_.resize(n, n);
+    step_.resize(n);
+    for (int j = 0; j < n; ++j) {
+      for (int i = j; i < n; ++i) {
+        double sum = i == j ? 1.0 : 0.0;
+        for (int k = i; k < n; ++k) sum += L_(k, i) * U_(k, j);
+        B_(i, j) = sum;
+      }
+      double sum = -u_[j];
+      for (int k = j; k < n; ++k) sum += L_(k, j) * g[k];
+      step_[j] = sum;
+    }
+    if (!factorise(B_)) return false;
+    if (iteration == options.iterations) break;
+    {
+      Eigen::Map<Eigen::MatrixXd> column(step_.data(), n, 1);
+      solve_lower(B_, column);
+    }
+    solve_upper(B_, step_);
+    if (step_.squaredNorm() < kConverged) break;
+    // No further than the quadratic model can be believed.
+    SignalVector change = SignalVector::Zero(n);
+    for (int j = 0; j < n; ++j)
+      for (int i = j; i < n; ++i) change[i] += L_(i, j) * step_[j];
+    double scale = 1.0;
+    for (int i = 0; i < N; ++i) {
+      scale = std::min(scale, kLargestStep_rad / std::max(std::abs(change[i]), kLargestStep_rad));
+      scale = std::min(scale, kLargestLogPowerStep / std::max(std::abs(change[N + i]), kLargestLogPowerStep));
+    }
+    u_ += scale * step_;
+    m_ += scale * change;
+    for (int i = 0; i < N; ++i) {
+      if (std::abs(m_[i]) > kLargestAngle_rad || std::abs(m_[N + i]) > kLargestLogPower) return false;
+    }
+  }
+
+  log_evidence_ = likelihood_.log_likelihood() - 0.5 * u_.squaredNorm() - 0.5 * log_determinant(B_);
+  U_.resize(n, 3 * N);  // [L', Y]
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) U_(i, j) = i <= j ? L_(j, i) : 0.0;
+  U_.rightCols(N) = prior.P.topRightCorner(n, N);
+  auto Y = U_.rightCols(N);
+  solve_lower(L_, Y);
+  posterior.q = prior.q;
+  posterior.x = prior.x;
+  posterior.P.setZero(3 * N, 3 * N);
+  posterior.P.bottomRightCorner(N, N) = prior.P.bottomRightCorner(N, N);
+  for (int j = 0; j < 3 * N; ++j) {
+    double sum = 0.0;
+    for (int i = 0; i < n; ++i) sum += U_(i, j) * u_[i];
+    posterior.x[j] += sum;
+  }
+  for (int j = 0; j < N; ++j)
+    for (int i = 0; i < N; ++i) {
+      double sum = 0.0;
+      for (int k = 0; k < n; ++k) sum += Y(k, i) * Y(k, j);
+      posterior.P(n + i, n + j) -= sum;
+    }
+  solve_lower(B_, U_);  // Z
+  for (int j = 0; j < 3 * N; ++j)
+    for (int i = 0; i <= j; ++i) {
+      double sum = 0.0;
+      for (int k = 0; k < n; ++k) sum += U_(k, i) * U_(k, j);
+      posterior.P(i, j) += sum;
+      posterior.P(j, i) = posterior.P(i, j);
+    }
+  return posterior.x.allFinite() && posterior.P.allFinite();
+}
+
+EquivalentInnovation equivalent_innovation(const JointAngleState& prior, const JointAngleState& posterior, int n) {
+  // A measurement that takes the variance from P to P+ has the gain 1 - P+/P and S = P / gain.
+  const double P = prior.P(n, n);
+  const double gain = std::clamp(1.0 - posterior.P(n, n) / P, kLeastGain, 1.0 - kLeastGain);
+  return {(posterior.x[n] - prior.x[n]) / gain, P / gain, gain};
+}
+
+}  // namespace truebearing

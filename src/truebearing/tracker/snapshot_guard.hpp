@@ -1,0 +1,27 @@
+// StreamGuard for snapshots: two blocks of one time are the same where their sums are.
+#pragma once
+
+#include "truebearing/array/interval.hpp"
+#include "truebearing/tracker/stream_guard.hpp"
+
+namespace truebearing {
+
+/// What the guard says of the measurement; `interval` has taken its snapshots, where it has any.
+inline StreamGuard::Verdict examine_snapshots(StreamGuard& guard, const Measurement& measurement, Interval& interval) {
+  Measurement sums;
+  sums.time_s = measurement.time_s;
+  bool usable = false;
+  if (measurement.snapshots) {
+    interval.take(*measurement.snapshots);
+    usable = interval.is_usable();
+    sums.z = BoundedVector::Zero(3);
+    for (const std::complex<double> value : measurement.snapshots->values) {
+      sums.z[0] += value.real();
+      sums.z[1] += value.imag();
+      sums.z[2] += std::norm(value);
+    }
+  }
+  return guard.examine(sums, usable);
+}
+
+}  // namespace truebearing

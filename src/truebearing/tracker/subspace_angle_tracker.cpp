@@ -1,0 +1,242 @@
+#include "truebearing/tracker/subspace_angle_tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "truebearing/array/direction_finding.hpp"
+#include "truebearing/measurement/lagged_angle.hpp"
+#include "truebearing/tracker/angle_neighbours.hpp"
+#include "truebearing/tracker/snapshot_guard.hpp"
+#include "truebearing/tracker/start.hpp"
+
+namespace truebearing {
+namespace {
+
+constexpr double kLargestAngle_rad = 1.55;  // short of end-fire
+constexpr double kLeastCurvature = 1e-9;    // of |b|^2: less is rounding
+
+}  // namespace
+
+SubspaceAngleTracker::SubspaceAngleTracker(SubspaceAngleOptions options) : options_(options), past_(options.beta) {
+  reset();
+}
+
+void SubspaceAngleTracker::reset() {
+  guard_ = {};
+  first_.reset();
+  filters_.clear();
+  predicted_.clear();
+  records_.clear();
+}
+
+std::span<const StepRecord> SubspaceAngleTracker::step(const Measurement& measurement) {
+  const StreamGuard::Verdict verdict = examine_snapshots(guard_, measurement, interval_);
+  if (verdict == StreamGuard::Verdict::repeated || verdict == StreamGuard::Verdict::out_of_order) {
+    for (StepRecord& record : records_) record.status = StepStatus::rejected;
+    return records_;
+  }
+  const bool usable = verdict == StreamGuard::Verdict::usable;
+  if (filters_.empty()) {
+    if (!usable || !begin(measurement.time_s)) return {};
+    used_time_s_ = measurement.time_s;
+    return publish(measurement, 0.0, false);
+  }
+  if (usable) follow_subspace();
+  return publish(measurement, measurement.time_s - used_time_s_, usable);
+}
+
+// Step 1: angles at two times, in the order of the angles.
+bool SubspaceAngleTracker::begin(double time_s) {
+  sample_covariance(interval_, covariance_);
+  const int M = interval_.sensors();
+  const SignalSubspace whole = signal_subspace(covariance_, M);
+  int N = 0;
+  if (first_)
+    N = static_cast<int>(first_->angles.size());
+  else if (const int* given = std::get_if<int>(&options_.targets))
+    N = *given;
+  else
+    N = source_count(whole.eigenvalues, static_cast<int>(interval_.snapshots().size()),
+                     std::get<OrderCriterion>(options_.targets));
+  N = std::min(N, interval_.live_sensors() - 1);
+  if (N < 1) return false;
+  const Eigen::MatrixXcd E = whole.basis.leftCols(N);
+  Start now{time_s, signal_angles({M, interval_.spacing_wavelengths()}, E)};
+  if (!first_ || static_cast<int>(first_->angles.size()) != N || time_s <= first_->time_s) {
+    first_ = std::move(now);
+    return false;
+  }
+  using Variance = Eigen::Matrix<double, 1, 1>;
+  const Variance R(options_.sigma_rad * options_.sigma_rad);
+  for (int n = 0; n < N; ++n) {  // equation (21), with the rate's variance of two-point differencing
+    const auto start =
+        two_point_state<1>(Variance(first_->angles[static_cast<std::size_t>(n)]), R,
+                           Variance(now.angles[static_cast<std::size_t>(n)]), R, time_s - first_->time_s);
+    filters_.emplace_back(start.x, start.P);
+  }
+  predicted_ = filters_;
+  past_.begin(E);
+  orthogonal_.begin(E);
+  eigenvectors_ = orthogonal_.basis();
+  records_.assign(static_cast<std::size_t>(N), StepRecord{});
+  return true;
+}
+
+const SplitMatrix<double>& SubspaceAngleTracker::basis() const {
+  switch (options_.subspace) {
+    case SubspaceAngleOptions::Subspace::orthogonal_iteration:
+      return orthogonal_.basis();
+    case SubspaceAngleOptions::Subspace::eigenvectors:
+      return eigenvectors_;
+    case SubspaceAngleOptions::Subspace::projection_approximation:
+      break;
+  }
+  return past_.basis();
+}
+
+void SubspaceAngleTracker::follow_subspace() {
+  const int N = static_cast<int>(filters_.size()), M = interval_.sensors();
+  switch (options_.subspace) {
+    case SubspaceAngleOptions::Subspace::projection_approximation:
+      past_.update(interval_);
+      break;
+    case SubspaceAngleOptions::Subspace::orthogonal_iteration:
+      orthogonal_.update(interval_);
+      break;
+    case SubspaceAngleOptions::Subspace::eigenvectors: {
+      sample_covariance(interval_, covariance_);
+      const Eigen::MatrixXcd E = signal_subspace(covariance_, N).basis;
+      eigenvectors_.re = E.real();
+      eigenvectors_.im = E.imag();
+      break;
+    }
+  }
+  if (!options_.sigma_from_subspace) return;
+  // Rayleigh quotients of the basis, and the mean of what they leave.
+  const SplitMatrix<double>& W = basis();
+  double total = 0.0, signals = 0.0, least = std::numeric_limits<double>::infinity();
+  const double Ns = static_cast<double>(interval_.snapshots().size());
+  for (const int t : interval_.snapshots())
+    for (int m = 0; m < M; ++m) total += std::norm(interval_.value(t, m)) / Ns;
+  for (Eigen::Index n = 0; n < N; ++n) {
+    double power = 0.0;
+    for (const int t : interval_.snapshots()) {
+      std::complex<double> product = 0.0;
+      for (int m = 0; m < M; ++m) product += std::complex<double>(W.re(m, n), -W.im(m, n)) * interval_.value(t, m);
+      power += std::norm(product) / Ns;
+    }
+    power /= W.re.col(n).squaredNorm() + W.im.col(n).squaredNorm();
+    signals += power;
+    least = std::min(least, power);
+  }
+  noise_power_ = std::max((total - signals) / std::max(interval_.live_sensors() - N, 1), 1e-12 * total);
+  least_power_ = std::max(least - noise_power_, 0.05 * noise_power_);
+}
+
+void SubspaceAngleTracker::prepare_innovation() {
+  switch (options_.innovation) {
+    case SubspaceAngleOptions::Innovation::ryu:
+      return ryu_.prepare(basis());
+    case SubspaceAngleOptions::Innovation::projection:
+      return projection_.prepare(basis());
+    case SubspaceAngleOptions::Innovation::implicit:
+      return implicit_.prepare(basis());
+  }
+}
+
+AngularInnovation<double> SubspaceAngleTracker::innovation(Eigen::Index n) {
+  switch (options_.innovation) {
+    case SubspaceAngleOptions::Innovation::ryu:
+      return ryu_(a_, b_, n);
+    case SubspaceAngleOptions::Innovation::projection:
+      return projection_(a_, b_, n);
+    case SubspaceAngleOptions::Innovation::implicit:
+      break;
+  }
+  return implicit_(a_, b_, n);
+}
+
+double SubspaceAngleTracker::variance(std::size_t n, double curvature) const {
+  double variance = options_.sigma_rad * options_.sigma_rad;
+  if (options_.sigma_from_subspace) {
+    // Of MUSIC's angles (Stoica and Nehorai 1989), every signal taken to be as weak as the weakest.
+    const double snr = least_power_ / noise_power_ / interval_.live_sensors();
+    const double Ns = static_cast<double>(interval_.snapshots().size());
+    variance += (1.0 + 1.0 / (snr * interval_.live_sensors())) / (2.0 * Ns * snr * curvature);
+  }
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t other = 0; other < predicted_.size(); ++other)
+    if (other != n) nearest = std::min(nearest, std::abs(predicted_[other].x()[0] - predicted_[n].x()[0]));
+  constexpr double kNearest_rad = 1e-4;
+  if (nearest < options_.inflate_within_rad) {
+    const double factor = options_.inflate_within_rad / std::max(nearest, kNearest_rad);
+    variance *= 1.0 + factor * factor;
+  }
+  return variance;
+}
+
+// Steps 2 to 5 for every target, and its record.
+std::span<const StepRecord> SubspaceAngleTracker::publish(const Measurement& measurement, double dt_s, bool usable) {
+  const ConstantVelocity<1, ContinuousWhiteNoise> motion{{options_.q_rad2ps3}};
+  const LineArray array{interval_.sensors(), interval_.spacing_wavelengths()};
+  const double lag_s = options_.lag_intervals * interval_.interval_s();
+  const std::size_t N = filters_.size();
+  const bool begins = dt_s == 0.0 && !usable;
+
+  for (std::size_t n = 0; n < N; ++n) {  // step 2, equations (16) and (17)
+    predicted_[n] = filters_[n];
+    StepRecord& record = records_[n];
+    record.status = begins ? StepStatus::ok : StepStatus::coasted;
+    if (dt_s > 0.0 && predicted_[n].predict(motion, dt_s) == StepStatus::failed) record.status = StepStatus::failed;
+    record.track = static_cast<int>(n);
+    record.time_s = measurement.time_s;
+    record.space = &angle_space();
+    record.sensor = measurement.sensor;
+    record.prediction = Prediction{predicted_[n].x(), predicted_[n].P()};
+    record.innovation.reset();
+    record.gain.reset();
+  }
+  if (usable) {
+    prepare_innovation();
+    if (a_.rows() != basis().rows() || a_.cols() != static_cast<Eigen::Index>(N)) {
+      a_.setZero(basis().rows(), static_cast<Eigen::Index>(N));
+      b_.setZero(basis().rows(), static_cast<Eigen::Index>(N));
+    }
+    used_time_s_ = measurement.time_s;
+  }
+  for (std::size_t n = 0; n < N; ++n) {
+    StepRecord& record = records_[n];
+    Filter updated = predicted_[n];
+    if (usable) {
+      LaggedAngle model{lag_s, 1.0};
+      const auto column = static_cast<Eigen::Index>(n);
+      const double angle_rad = std::clamp(model.h(updated.x())[0], -kLargestAngle_rad, kLargestAngle_rad);
+      array.steer(angle_rad, column, a_, b_);
+      for (int m = 0; m < array.sensors; ++m)
+        if (interval_.live()[static_cast<std::size_t>(m)] == 0.0)
+          for (SplitMatrix<double>* matrix : {&a_, &b_}) matrix->re(m, column) = matrix->im(m, column) = 0.0;
+      const AngularInnovation<double> found = innovation(column);  // step 3, equation (13)
+      const double b2 = b_.re.col(column).squaredNorm() + b_.im.col(column).squaredNorm();
+      record.status = StepStatus::failed;
+      if (std::isfinite(found.angle_rad) && found.curvature > kLeastCurvature * b2) {
+        model.variance_rad2 = variance(n, found.curvature);
+        const LaggedAngle::Vector z(angle_rad + found.angle_rad);
+        const auto update = updated.update(model, z);  // step 4, equations (18) to (20)
+        record.status = update.status;
+        if (update.status == StepStatus::ok) {
+          record.innovation = Innovation{z, update.nu, update.S, update.nis};
+          record.gain.emplace(update.K);
+        }
+      }
+      if (record.status == StepStatus::failed) ++guard_.counts.failed;
+      filters_[n] = updated;
+    }
+    record.x = updated.x();
+    record.P = updated.P();
+  }
+  find_neighbours(array, records_,
+                  [&](std::size_t i, std::size_t j) { return records_[i].P(0, 0) + records_[j].P(0, 0); });
+  return records_;
+}
+
+}  // namespace truebearing

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/support/angle_tracks.hpp"
 #include "tests/support/error_message.hpp"
 #include "tests/support/line_trackers.hpp"
 #include "truebearing/tracker/raw_tracker.hpp"
@@ -97,11 +98,107 @@ TEST(ScoreRecording, SetIsResetFirst) {
   EXPECT_EQ(first.nees, second.nees);
 }
 
-TEST(ScoreRecording, NeedsTheTruthOfOneTarget) {
+TEST(ScoreRecording, NeedsTheTruthOfATarget) {
+  Recording recording = testing::radar_family(3).simulate({});
+  recording.truth.clear();
+  TrackerSet set{Ensemble{}};
+  EXPECT_THAT(error_message([&] { score_recording(set, {}, recording, {}); }), ::testing::HasSubstr("0 targets"));
+}
+
+TEST(ScoreRecording, FiguresAtTimesAreOfOneTarget) {
   Recording recording = testing::radar_family(3).simulate({});
   recording.truth.push_back(recording.truth[0]);
   TrackerSet set{Ensemble{}};
-  EXPECT_THAT(error_message([&] { score_recording(set, {}, recording, {}); }), ::testing::HasSubstr("2 targets"));
+  EXPECT_THAT(error_message([&] { score_recording(set, {}, recording, {.times_s = {2.0}}); }),
+              ::testing::HasSubstr("scoring.times_s"));
+}
+
+// The score of a tracker that says `told` of a recording.
+RunScore score_of(const testing::AnglesOfTracks& told, const Recording& recording, const ScoringRule& rule = {}) {
+  Ensemble ensemble;
+  ensemble.add("told", std::make_unique<testing::ToldTracker>(told));
+  TrackerSet set(std::move(ensemble));
+  set.show_member("told");
+  return score_recording(set, {Scorer(angle_space(), angle_space())}, recording, rule)[0];
+}
+
+void expect_errors(const RunScore& score, const std::vector<double>& wanted) {
+  ASSERT_EQ(score.error[0].size(), wanted.size());
+  for (std::size_t place = 0; place < wanted.size(); ++place) {
+    EXPECT_EQ(std::isnan(score.nees[place]), std::isnan(wanted[place])) << place;
+    EXPECT_EQ(std::isnan(score.quantity_nees[0][place]), std::isnan(wanted[place])) << place;
+    if (std::isnan(wanted[place]))
+      EXPECT_TRUE(std::isnan(score.error[0][place])) << place;
+    else
+      EXPECT_NEAR(score.error[0][place], wanted[place], 1e-12) << place;
+  }
+}
+
+TEST(Scorer, ErrorsAreInTheUnitOfTheQuantity) {
+  const RunScore score = score_of({{0, {12.0}}}, testing::angle_recording({{0, {10.0}}}));
+  EXPECT_NEAR(score.error[0][0], 2.0, 1e-12) << "degrees";
+  EXPECT_NEAR(score.quantity_nees[0][0], 4.0, 1e-12) << "which the NEES knows nothing of";
+  const Scorer scorer(angle_space(), angle_space());
+  const BoundedVector truth = Eigen::Vector2d(0.1, 0.0), estimate = Eigen::Vector2d(0.3, 0.0);
+  EXPECT_DOUBLE_EQ(scorer.error(0, truth, estimate), degrees(0.2));
+  EXPECT_DOUBLE_EQ(scorer.true_value(0, truth), degrees(0.1));
+  EXPECT_DOUBLE_EQ(scorer.estimated_value(0, estimate), degrees(0.3));
+  EXPECT_EQ(scorer.quantity("rate_degps"), 1u);
+  EXPECT_FALSE(scorer.quantity("angle"));
+}
+
+TEST(ScoreRecording, TracksAreScoredAgainstTheTargetsOfTheirNumbers) {
+  const Recording recording = testing::angle_recording({{1, {10, 10, 10}}, {4, {30, kNaN, 30}}});
+  const RunScore score = score_of({{1, {11, 12, kNaN}}, {2, {30, 30, 30}}, {4, {35, 36, 37}}}, recording);
+  EXPECT_EQ(score.targets, 2u);
+  EXPECT_EQ(score.steps(), 3u);
+  // No record of 1 at the last step, no target 4 at the second.
+  expect_errors(score, {1, 2, kNaN, 5, kNaN, 7});
+  expect_errors(score_of({{1, {11, 12, 13}}, {4, {35, 36, 37}}}, recording, {.from_step = 3}),
+                {kNaN, kNaN, 3, kNaN, kNaN, 7});
+}
+
+TEST(ScoreRecording, TheOnlyTargetIsThatOfTheFirstRecordWhateverItsNumber) {
+  const RunScore score = score_of({{0, {11, 12}}}, testing::angle_recording({{227006760, {10, 10}}}));
+  expect_errors(score, {1, 2});
+}
+
+TEST(ScoreRecording, PhasesAndTurnsAreThoseOfTheirTargets) {
+  Recording recording = testing::angle_recording({{0, {10, 10}}, {1, {30, 30}}, {2, {50, 50}}});
+  recording.truth[0].phase = {0, 1};
+  recording.truth[2].phase = {1, 1};
+  for (Truth& truth : recording.truth) truth.turns_at_s = 1.0;
+  const RunScore score = score_of({{0, {10, 10}}}, recording);
+  EXPECT_THAT(score.phase, ElementsAre(0, 1, -1, -1, 1, 1));
+  EXPECT_FALSE(score.turns_at_s) << "nobody says whose";
+}
+
+TEST(ScoreRecording, TracksOfARuleHaveAnOutcome) {
+  const Recording recording = testing::angle_recording({{0, {0, 0, 0}}, {1, {20, 20, 20}}});
+  const testing::AnglesOfTracks swapped{{0, {0, 20, 20}}, {1, {20, 0, 0}}};
+  EXPECT_FALSE(score_of(swapped, recording).tracks) << "nobody asked";
+  ScoringRule rule;
+  rule.tracks = TrackRule{.quantity = "angle_deg", .bad = 3.0, .last_steps = 2, .excursion = 6.0};
+  EXPECT_EQ(score_of(swapped, recording, rule).tracks->swapped, 2);
+  EXPECT_TRUE(score_of({{0, {1, 1, 1}}, {1, {19, 19, 19}}}, recording, rule).tracks->is_clean());
+  rule.from_step = 3;
+  EXPECT_TRUE(score_of({{0, {70, 70, 1}}, {1, {19, 19, 19}}}, recording, rule).tracks->is_clean())
+      << "what is not scored is not looked at";
+}
+
+TEST(ScoreRecording, GospaAssignsRecordsWhateverTheirNumbers) {
+  const Recording recording = testing::angle_recording({{0, {0, 0, kNaN}}, {1, {20, 20, 20}}});
+  ScoringRule rule;
+  rule.gospa = GospaRule{"angle_deg", 4.0};
+  const RunScore score = score_of({{7, {21, 22, 23}}, {8, {1, 9, kNaN}}}, recording, rule);
+  expect_errors(score, {1, kNaN, kNaN, 1, 2, 3});
+  ASSERT_TRUE(score.gospa);
+  EXPECT_EQ(score.gospa->steps, 3.0);
+  EXPECT_EQ(score.gospa->missed, 1.0) << "the first target, at the second step";
+  EXPECT_EQ(score.gospa->false_tracks, 1.0);
+  EXPECT_NEAR(score.gospa->localisation, 1 + 1 + 4 + 9, 1e-9);
+  EXPECT_NEAR(score.gospa->squared, 15 + 2 * 8, 1e-9);
+  EXPECT_FALSE(score_of({{0, {0, 0, 0}}}, recording).gospa);
 }
 
 }  // namespace

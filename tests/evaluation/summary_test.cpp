@@ -146,6 +146,34 @@ TEST(Summary, OrderOfTheRunsDoesNotMatterToTheMedianNorMuchToTheRest) {
   EXPECT_NEAR(forward.quantities[0].rmse, backward.quantities[0].rmse, 1e-12);
 }
 
+TEST(Summary, TargetsShareTheStepsOfTheSeriesAndStayInTheirRun) {
+  std::vector<RunScore> runs{run({3.0, 4.0, 1.0, kNaN}, {1, 1, 1, 1}, {1, 1, 1, 1}),
+                             run({0.0, 2.0, 2.0, 2.0}, {1, 1, 1, 1}, {1, 1, 1, 1})};
+  for (RunScore& score : runs) {
+    score.targets = 2;
+    score.phase = {0, 1, 1, 0};
+  }
+  const TrackerSummary summary = summarise("t", kScorer, pointers(runs), {});
+  const QuantitySummary& position = *summary.quantity("position_m");
+  ASSERT_EQ(position.series.size(), 2u);
+  EXPECT_DOUBLE_EQ(position.series[0], std::sqrt((9.0 + 1.0 + 0.0 + 4.0) / 4.0));
+  EXPECT_DOUBLE_EQ(position.series[1], std::sqrt((16.0 + 4.0 + 4.0) / 3.0));
+  EXPECT_DOUBLE_EQ(position.rmse, std::sqrt(38.0 / 7.0));
+  const double without_first = std::sqrt(12.0 / 4.0), without_second = std::sqrt(26.0 / 3.0);
+  EXPECT_NEAR(position.rmse_se, 0.5 * std::abs(without_first - without_second), 1e-12) << "of two runs, not four";
+  EXPECT_DOUBLE_EQ(position.phases[1].rmse, std::sqrt((16.0 + 1.0 + 4.0 + 4.0) / 4.0));
+  EXPECT_EQ(summary.scored_steps, 7);
+}
+
+TEST(Summary, ARunIsLostWithAnyTarget) {
+  std::vector<RunScore> runs{run({1.0, 12.0, 1.0, 1.0}, {0, 0, 0, 0}, {1, 1, 1, 1}),
+                             run({12.0, 1.0, 12.0, 1.0}, {0, 0, 0, 0}, {1, 1, 1, 1}),
+                             run({1.0, 1.0, kNaN, kNaN}, {0, 0, 0, 0}, {1, 1, 1, 1})};
+  for (RunScore& score : runs) score.targets = 2;
+  const ScoringRule rule{.from_step = 1, .loss_thresholds = {{"position_m", 10.0}}};
+  EXPECT_DOUBLE_EQ(summarise("t", kScorer, pointers(runs), rule).loss_rate, 2.0 / 3.0) << "all but the second";
+}
+
 TEST(PairedDifference, IsOverRunsOfTheRunsOwnRmse) {
   const std::vector<RunScore> a{run({3.0, 4.0}, {0.0, 0.0}, {1.0, 1.0}), run({1.0, 1.0}, {0.0, 0.0}, {1.0, 1.0}),
                                 run({6.0, kNaN}, {0.0, kNaN}, {1.0, 1.0})};

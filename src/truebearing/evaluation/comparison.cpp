@@ -75,7 +75,10 @@ Comparison summarise_sets(const TrackerSet& trackers, const std::vector<Scorer>&
     summary.metrics.insert(summary.metrics.end(), metrics.begin(), metrics.end());
   };
   for (std::size_t i = 0; i < scorers.size(); ++i)
-    add_metrics(comparison.trackers[i], event_metrics(scorers[i], by_tracker[i]));
+    for (const std::vector<Metric>& metrics :
+         {event_metrics(scorers[i], by_tracker[i]), track_metrics(scorers[i], by_tracker[i], options.scoring),
+          gospa_metrics(by_tracker[i], options.scoring)})
+      add_metrics(comparison.trackers[i], metrics);
   if (options.cramer_rao) {
     comparison.cramer_rao = summarise_bound(bounds, options.scoring.times_s);
     for (TrackerSummary& summary : comparison.trackers)
@@ -90,7 +93,8 @@ Comparison summarise_sets(const TrackerSet& trackers, const std::vector<Scorer>&
     const std::size_t ia = index_of(a), ib = index_of(b);
     comparison.pairs.push_back(
         {a, b, paired_difference(scorers[ia], by_tracker[ia], scorers[ib], by_tracker[ib]),
-         timed_differences(scorers[ia], by_tracker[ia], scorers[ib], by_tracker[ib], options.scoring)});
+         timed_differences(scorers[ia], by_tracker[ia], scorers[ib], by_tracker[ib], options.scoring),
+         clean_differences(scorers[ia], by_tracker[ia], scorers[ib], by_tracker[ib])});
   }
   return comparison;
 }

@@ -10,6 +10,7 @@
 #include "truebearing/evaluation/monte_carlo.hpp"
 #include "truebearing/evaluation/summary.hpp"
 #include "truebearing/evaluation/time_metrics.hpp"
+#include "truebearing/evaluation/track_metrics.hpp"
 #include "truebearing/simulation/scenario.hpp"
 
 namespace truebearing {
@@ -38,6 +39,7 @@ struct Comparison {
     std::string a, b;
     std::vector<PairedDifference> differences;
     std::vector<TimedDifference> at_times;
+    std::vector<CleanDifference> clean = {};  ///< where the scoring asks for tracks
   };
   std::vector<Pair> pairs;
   std::vector<std::string> bounds;

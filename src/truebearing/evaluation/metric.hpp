@@ -17,6 +17,8 @@ struct Metric {
 
 /// Of a quantity with its unit ("velocity_mps"): the unit as it is printed ("m/s"), and the rest ("velocity").
 std::string unit_of(const std::string& quantity);
+/// The unit of its square: "(m/s)^2".
+std::string squared_unit_of(const std::string& quantity);
 std::string name_of(const std::string& quantity);
 
 }  // namespace truebearing

@@ -7,6 +7,7 @@
 
 #include "truebearing/evaluation/text_table.hpp"
 #include "truebearing/evaluation/time_table.hpp"
+#include "truebearing/evaluation/track_table.hpp"
 #include "truebearing/io/json_file.hpp"
 
 namespace truebearing {
@@ -164,7 +165,7 @@ std::string phase_table(const Comparison& comparison) {
 std::string tables(const Comparison& comparison) {
   std::vector<std::vector<std::string>> rows{heading(comparison)};
   for (const TrackerSummary& summary : comparison.trackers) rows.push_back(table_row(comparison, summary));
-  std::string text = aligned(rows) + phase_table(comparison) + time_tables(comparison);
+  std::string text = aligned(rows) + track_tables(comparison) + phase_table(comparison) + time_tables(comparison);
   if (comparison.pairs.empty()) return text;
   rows.assign(1, {"paired, per-run RMSE", "", "mean", "+-", "in standard errors"});
   for (const Comparison::Pair& pair : comparison.pairs)
@@ -199,6 +200,8 @@ void add_figures(const Comparison& comparison, Json& json) {
     Json& entry = json["paired"][pair.a + " - " + pair.b] = Json::object();
     for (const PairedDifference& difference : pair.differences)
       entry[difference.quantity] = {{"mean", number(difference.mean)}, {"se", number(difference.se)}};
+    for (const CleanDifference& difference : pair.clean)
+      entry[name_of(difference, comparison)] = {{"mean", number(difference.mean)}, {"se", number(difference.se)}};
     for (const TimedDifference& difference : pair.at_times)
       entry["at_times"].push_back({{"quantity", difference.quantity},
                                    {"time_s", difference.time_s},

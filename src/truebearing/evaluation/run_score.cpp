@@ -4,8 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "truebearing/core/covariance.hpp"
 #include "truebearing/core/error.hpp"
+#include "truebearing/evaluation/gospa.hpp"
+#include "truebearing/evaluation/target_record.hpp"
 
 namespace truebearing {
 namespace {
@@ -20,92 +21,128 @@ void check_target_motion(const Recording& recording) {
                      "measurements with own-ship columns");
 }
 
+// Scores the records of one tracker in one run as they come.
+class RunScorer {
+ public:
+  RunScorer(const Scorer& scorer, const Recording& recording, const ScoringRule& rule)
+      : scorer_(scorer), recording_(recording), rule_(rule), matched_(recording.truth.size()) {
+    const std::size_t steps = recording.measurements.size(), targets = recording.truth.size();
+    scorer.prepare(score_, steps, targets);
+    take_phases(steps);
+    if (targets == 1) score_.turns_at_s = recording.truth.front().turns_at_s;
+    for (const int at : steps_at(recording, rule.times_s)) score_.at_times.push_back({.step = at});
+    if (rule.tracks) followed_ = scorer.quantity(rule.tracks->quantity);
+    if (followed_) truth_.assign(steps * targets, kNotScored), estimates_ = truth_;
+    if (rule.gospa) assigned_ = scorer.quantity(rule.gospa->quantity);
+    if (assigned_) score_.gospa.emplace();
+  }
+
+  void take(std::size_t step, std::span<const StepRecord> records) {
+    match(step, records);
+    for (std::size_t target = 0; target < matched_.size(); ++target) {
+      const BoundedVector& truth = recording_.truth[target].x[step];
+      const std::size_t place = target * recording_.measurements.size() + step;
+      if (followed_) truth_[place] = scorer_.true_value(*followed_, truth);
+      if (!matched_[target]) continue;
+      const StepRecord& record = *matched_[target];
+      scorer_.score_step(truth, record, place, score_);
+      if (followed_) estimates_[place] = scorer_.estimated_value(*followed_, record.x);
+      for (TimeScore& at : score_.at_times)
+        if (at.step == static_cast<int>(step))
+          at.take(truth, record, recording_.measurements[step].sensor, rule_.target_motion);
+    }
+  }
+
+  RunScore finish(std::span<const TrackEvent> events) {
+    score_.events.assign(events.begin(), events.end());
+    if (followed_) score_.tracks = track_outcome(truth_, estimates_, matched_.size(), *rule_.tracks);
+    return std::move(score_);
+  }
+
+ private:
+  void take_phases(std::size_t steps) {
+    const std::vector<Truth>& truth = recording_.truth;
+    if (truth.size() == 1) score_.phase = truth.front().phase;
+    if (truth.size() == 1 || std::all_of(truth.begin(), truth.end(), [](const Truth& t) { return t.phase.empty(); }))
+      return;
+    for (const Truth& target : truth) {
+      score_.phase.insert(score_.phase.end(), target.phase.begin(), target.phase.end());
+      score_.phase.resize(score_.phase.size() + steps - target.phase.size(), -1);
+    }
+  }
+
+  // The record of each target.
+  void match(std::size_t step, std::span<const StepRecord> records) {
+    if (assigned_) return assign(step, records);
+    for (std::size_t target = 0; target < matched_.size(); ++target) {
+      const bool is_there = matched_.size() == 1 || !recording_.truth[target].x[step].array().isNaN().all();
+      matched_[target] = is_there ? target_record(recording_, target, records) : nullptr;
+    }
+  }
+
+  void assign(std::size_t step, std::span<const StepRecord> records) {
+    std::vector<double> true_values, estimated_values;
+    std::vector<std::size_t> targets;
+    std::vector<const StepRecord*> tracks;
+    for (std::size_t target = 0; target < matched_.size(); ++target) {
+      const double value = scorer_.true_value(*assigned_, recording_.truth[target].x[step]);
+      if (!std::isfinite(value)) continue;
+      true_values.push_back(value);
+      targets.push_back(target);
+    }
+    for (const StepRecord& record : records) {
+      const double value = scorer_.estimated_value(*assigned_, record.x);
+      if (!std::isfinite(value)) continue;
+      estimated_values.push_back(value);
+      tracks.push_back(&record);
+    }
+    const Gospa found = gospa(true_values, estimated_values, rule_.gospa->cutoff);
+    std::fill(matched_.begin(), matched_.end(), nullptr);
+    for (std::size_t i = 0; i < targets.size(); ++i)
+      if (found.track_of[i] >= 0) matched_[targets[i]] = tracks[static_cast<std::size_t>(found.track_of[i])];
+    GospaSum& sum = *score_.gospa;
+    sum.squared += found.squared(rule_.gospa->cutoff);
+    sum.localisation += found.localisation;
+    sum.missed += found.missed;
+    sum.false_tracks += found.false_tracks;
+    sum.steps += 1.0;
+  }
+
+  const Scorer& scorer_;
+  const Recording& recording_;
+  const ScoringRule& rule_;
+  RunScore score_;
+  std::vector<const StepRecord*> matched_;  // [target], of this step
+  std::optional<std::size_t> followed_;     // the quantity of rule.tracks
+  std::optional<std::size_t> assigned_;     // the quantity of rule.gospa
+  std::vector<double> truth_, estimates_;   // [target * steps + step] of the one that is followed
+};
+
+void check_targets(const Recording& recording, const ScoringRule& rule) {
+  if (recording.truth.empty()) throw InputError("scoring", "the recording has the truth of 0 targets", "one or more");
+  if (recording.truth.size() > 1 && !rule.times_s.empty())
+    throw InputError("scoring.times_s",
+                     "are of one target, and the recording has " + std::to_string(recording.truth.size()),
+                     "no times_s, or a recording of one target");
+}
+
 }  // namespace
-
-Scorer::Scorer(const StateSpace& truth, const StateSpace& estimate) : truth_(&truth) {
-  std::vector<int> place_of(truth.components.size(), -1);
-  for (int i = 0; i < truth.size(); ++i) {
-    const int in_estimate = estimate.component_index(truth.components[static_cast<std::size_t>(i)]);
-    if (in_estimate < 0) continue;
-    place_of[static_cast<std::size_t>(i)] = static_cast<int>(truth_index_.size());
-    truth_index_.push_back(i);
-    estimate_index_.push_back(in_estimate);
-  }
-  for (const Quantity& quantity : truth.quantities) {
-    std::vector<int> places;
-    for (const int index : quantity.indices)
-      if (place_of[static_cast<std::size_t>(index)] >= 0) places.push_back(place_of[static_cast<std::size_t>(index)]);
-    if (places.size() != quantity.indices.size()) continue;
-    quantity_names_.push_back(quantity.name);
-    quantities_.push_back(std::move(places));
-  }
-  if (quantities_.empty())
-    throw InputError("scoring", "the truth (" + truth.name + ") and a tracker's state (" + estimate.name +
-                                    ") have no quantity in common");
-}
-
-void Scorer::prepare(RunScore& score, std::size_t steps) const {
-  score.error.assign(quantities_.size(), std::vector<double>(steps, kNotScored));
-  score.nees.assign(steps, kNotScored);
-  score.quantity_nees.assign(quantities_.size(), std::vector<double>(steps, kNotScored));
-}
-
-void Scorer::score_step(const BoundedVector& truth, const StepRecord& record, std::size_t step, RunScore& score) const {
-  const int n = dimension();
-  BoundedVector d(n);
-  BoundedMatrix P(n, n);
-  for (int i = 0; i < n; ++i) {
-    const auto row = static_cast<std::size_t>(i);
-    d[i] = truth[truth_index_[row]] - record.x[estimate_index_[row]];
-    for (int j = 0; j < n; ++j) P(i, j) = record.P(estimate_index_[row], estimate_index_[static_cast<std::size_t>(j)]);
-  }
-  for (std::size_t q = 0; q < quantities_.size(); ++q) {
-    const BoundedVector part = d(quantities_[q]);
-    score.error[q][step] = part.norm();
-    score.quantity_nees[q][step] = mahalanobis_squared(BoundedMatrix(P(quantities_[q], quantities_[q])), part);
-  }
-  score.nees[step] = mahalanobis_squared(P, d);
-  if (record.correction) {
-    ++score.corrected;
-    score.gate_sum += record.correction->gate;
-    score.gate_limited += record.correction->limited ? 1 : 0;
-  }
-}
 
 std::vector<RunScore> score_recording(TrackerSet& trackers, const std::vector<Scorer>& scorers,
                                       const Recording& recording, const ScoringRule& rule) {
-  if (recording.truth.size() != 1)
-    throw InputError("scoring", "the recording has the truth of " + std::to_string(recording.truth.size()) + " targets",
-                     "one");
+  check_targets(recording, rule);
   if (rule.target_motion) check_target_motion(recording);
-  const std::vector<BoundedVector>& truth = recording.truth.front().x;
-  const std::size_t steps = recording.measurements.size();
-  const std::vector<int> time_steps = steps_at(recording, rule.times_s);
-  std::vector<RunScore> scores(scorers.size());
-  for (std::size_t i = 0; i < scorers.size(); ++i) {
-    scorers[i].prepare(scores[i], steps);
-    scores[i].phase = recording.truth.front().phase;
-    scores[i].turns_at_s = recording.truth.front().turns_at_s;
-    for (const int at : time_steps) scores[i].at_times.push_back({.step = at});
-  }
+  std::vector<RunScorer> runs;
+  for (const Scorer& scorer : scorers) runs.emplace_back(scorer, recording, rule);
 
   trackers.reset();
-  for (std::size_t step = 0; step < steps; ++step) {
+  for (std::size_t step = 0; step < recording.measurements.size(); ++step) {
     trackers.step(recording.measurements[step]);
     if (static_cast<int>(step) + 1 < rule.from_step) continue;
-    for (std::size_t i = 0; i < scorers.size(); ++i) {
-      const std::span<const StepRecord> records = trackers.records(static_cast<int>(i));
-      if (records.empty()) continue;
-      scorers[i].score_step(truth[step], records.front(), step, scores[i]);
-      for (TimeScore& at : scores[i].at_times)
-        if (at.step == static_cast<int>(step))
-          at.take(truth[step], records.front(), recording.measurements[step].sensor, rule.target_motion);
-    }
+    for (std::size_t i = 0; i < runs.size(); ++i) runs[i].take(step, trackers.records(static_cast<int>(i)));
   }
-  for (std::size_t i = 0; i < scorers.size(); ++i) {
-    const std::span<const TrackEvent> events = trackers.events(static_cast<int>(i));
-    scores[i].events.assign(events.begin(), events.end());
-  }
+  std::vector<RunScore> scores;
+  for (std::size_t i = 0; i < runs.size(); ++i) scores.push_back(runs[i].finish(trackers.events(static_cast<int>(i))));
   return scores;
 }
 

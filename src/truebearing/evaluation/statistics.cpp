@@ -20,13 +20,7 @@ double jackknife_se(const std::vector<double>& left_out) {
   return std::sqrt((n - 1.0) / n * squares);
 }
 
-}  // namespace
-
-double root_mean(const SquaredErrors& errors) {
-  return errors.count > 0.0 ? std::sqrt(errors.sum / errors.count) : kNaN;
-}
-
-Estimate pooled_rmse(const std::vector<SquaredErrors>& runs) {
+Estimate pooled(const std::vector<SquaredErrors>& runs, double (*figure)(const SquaredErrors&)) {
   // What is left without a run is summed from both ends: a run that diverged by many orders of magnitude cannot be
   // taken from a sum again.
   std::vector<SquaredErrors> after(runs.size() + 1);
@@ -39,10 +33,28 @@ Estimate pooled_rmse(const std::vector<SquaredErrors>& runs) {
   for (std::size_t i = 0; i < runs.size(); ++i) {
     SquaredErrors rest = before;
     rest.add(after[i + 1]);
-    if (runs[i].count > 0.0 && rest.count > 0.0) left_out.push_back(root_mean(rest));
+    if (runs[i].count > 0.0 && rest.count > 0.0) left_out.push_back(figure(rest));
     before.add(runs[i]);
   }
-  return {root_mean(before), jackknife_se(left_out)};
+  return {figure(before), jackknife_se(left_out)};
+}
+
+}  // namespace
+
+double root_mean(const SquaredErrors& errors) {
+  return errors.count > 0.0 ? std::sqrt(errors.sum / errors.count) : kNaN;
+}
+
+double mean_square(const SquaredErrors& errors) {
+  return errors.count > 0.0 ? errors.sum / errors.count : kNaN;
+}
+
+Estimate pooled_rmse(const std::vector<SquaredErrors>& runs) {
+  return pooled(runs, root_mean);
+}
+
+Estimate pooled_mse(const std::vector<SquaredErrors>& runs) {
+  return pooled(runs, mean_square);
 }
 
 Estimate mean_of(const std::vector<double>& values) {

@@ -22,6 +22,7 @@ struct SquaredErrors {
 };
 
 double root_mean(const SquaredErrors& errors);
+double mean_square(const SquaredErrors& errors);
 
 /// A figure and its standard error.
 struct Estimate {
@@ -32,6 +33,8 @@ struct Estimate {
 /// RMSE pooled over runs. Its standard error is the jackknife, one run left out at a time (Efron and Stein 1981); runs
 /// without errors are passed over.
 Estimate pooled_rmse(const std::vector<SquaredErrors>& runs);
+/// The same without the root.
+Estimate pooled_mse(const std::vector<SquaredErrors>& runs);
 
 /// Mean of independent values.
 Estimate mean_of(const std::vector<double>& values);

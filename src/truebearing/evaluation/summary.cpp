@@ -3,38 +3,22 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <span>
 
 #include "truebearing/core/chi_square.hpp"
-#include "truebearing/evaluation/statistics.hpp"
 
 namespace truebearing {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-SquaredErrors squared_errors(const std::vector<double>& errors) {
-  SquaredErrors total;
-  for (const double error : errors)
-    if (!std::isnan(error)) total.add(error);
-  return total;
-}
-
-// The squared errors of a run's steps in that phase.
-SquaredErrors squared_errors_in(const std::vector<double>& errors, const std::vector<int>& phases, int phase) {
-  SquaredErrors total;
-  for (std::size_t step = 0; step < std::min(errors.size(), phases.size()); ++step)
-    if (phases[step] == phase && !std::isnan(errors[step])) total.add(errors[step]);
-  return total;
-}
-
 std::vector<QuantitySummary::Phase> summarise_phases(std::size_t q, const std::vector<const RunScore*>& scores) {
-  int count = 0;
-  for (const RunScore* score : scores)
-    for (const int phase : score->phase) count = std::max(count, phase + 1);
+  const int count = phase_count(scores);
   std::vector<QuantitySummary::Phase> phases;
   for (int phase = 0; phase < count; ++phase) {
     std::vector<SquaredErrors> runs;
-    for (const RunScore* score : scores) runs.push_back(squared_errors_in(score->error[q], score->phase, phase));
+    for (const RunScore* score : scores) runs.push_back(squared_errors_in(*score, q, phase));
     const Estimate rmse = pooled_rmse(runs);
     phases.push_back({rmse.value, rmse.se});
   }
@@ -50,12 +34,12 @@ QuantitySummary summarise_quantity(const std::string& name, std::size_t q, int d
   std::vector<SquaredErrors> steps;
   for (const RunScore* score : scores) {
     const std::vector<double>& errors = score->error[q];
-    runs.push_back(squared_errors(errors));
-    steps.resize(std::max(steps.size(), errors.size()));
-    for (std::size_t step = 0; step < errors.size(); ++step) {
-      if (std::isnan(errors[step])) continue;
-      all.push_back(errors[step]);
-      steps[step].add(errors[step]);
+    runs.push_back(squared_errors(*score, q));
+    steps.resize(std::max(steps.size(), score->steps()));
+    for (std::size_t place = 0; place < errors.size(); ++place) {
+      if (std::isnan(errors[place])) continue;
+      all.push_back(errors[place]);
+      steps[place % score->steps()].add(errors[place]);
     }
   }
   const Estimate rmse = pooled_rmse(runs);
@@ -76,18 +60,43 @@ QuantitySummary summarise_quantity(const std::string& name, std::size_t q, int d
   return summary;
 }
 
+// Is the last error of any target beyond its threshold?
 bool is_lost(const RunScore& score, const Scorer& scorer, const ScoringRule& rule) {
-  for (const auto& [name, threshold] : rule.loss_thresholds)
-    for (std::size_t q = 0; q < scorer.quantities().size(); ++q) {
-      if (scorer.quantities()[q] != name) continue;
-      const auto& errors = score.error[q];
+  for (const auto& [name, threshold] : rule.loss_thresholds) {
+    const std::optional<std::size_t> q = scorer.quantity(name);
+    if (!q) continue;
+    for (std::size_t target = 0; target < score.targets; ++target) {
+      const std::span errors = std::span(score.error[*q]).subspan(target * score.steps(), score.steps());
       const auto last = std::find_if(errors.rbegin(), errors.rend(), [](double e) { return !std::isnan(e); });
       if (last == errors.rend() || *last > threshold) return true;
     }
+  }
   return false;
 }
 
 }  // namespace
+
+SquaredErrors squared_errors(const RunScore& score, std::size_t quantity) {
+  SquaredErrors total;
+  for (const double error : score.error[quantity])
+    if (!std::isnan(error)) total.add(error);
+  return total;
+}
+
+SquaredErrors squared_errors_in(const RunScore& score, std::size_t quantity, int phase) {
+  const std::vector<double>& errors = score.error[quantity];
+  SquaredErrors total;
+  for (std::size_t place = 0; place < std::min(errors.size(), score.phase.size()); ++place)
+    if (score.phase[place] == phase && !std::isnan(errors[place])) total.add(errors[place]);
+  return total;
+}
+
+int phase_count(const std::vector<const RunScore*>& scores) {
+  int count = 0;
+  for (const RunScore* score : scores)
+    for (const int phase : score->phase) count = std::max(count, phase + 1);
+  return count;
+}
 
 const QuantitySummary* TrackerSummary::quantity(const std::string& quantity_name) const {
   for (const QuantitySummary& summary : quantities)
@@ -138,8 +147,7 @@ std::vector<PairedDifference> paired_difference(const Scorer& scorer_a, const st
       if (scorer_a.quantities()[qa] != scorer_b.quantities()[qb]) continue;
       std::vector<double> values;
       for (std::size_t run = 0; run < a.size(); ++run) {
-        const double value =
-            root_mean(squared_errors(a[run]->error[qa])) - root_mean(squared_errors(b[run]->error[qb]));
+        const double value = root_mean(squared_errors(*a[run], qa)) - root_mean(squared_errors(*b[run], qb));
         if (!std::isnan(value)) values.push_back(value);
       }
       const Estimate mean = mean_of(values);

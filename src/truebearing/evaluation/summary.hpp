@@ -7,6 +7,7 @@
 
 #include "truebearing/evaluation/metric.hpp"
 #include "truebearing/evaluation/run_score.hpp"
+#include "truebearing/evaluation/statistics.hpp"
 
 namespace truebearing {
 
@@ -16,7 +17,7 @@ struct QuantitySummary {
   double rmse_se = 0.0;        ///< jackknife over runs; NaN for a single run
   double median = 0.0;         ///< of the error norm over runs and scored steps
   double coverage95 = 0.0;     ///< share of them inside the 95 % ellipse of the quantity's own covariance
-  std::vector<double> series;  ///< RMSE over runs at each step; NaN where not scored
+  std::vector<double> series;  ///< RMSE over runs and targets at each step; NaN where not scored
   struct Phase {
     double rmse = 0.0;
     double rmse_se = 0.0;
@@ -43,6 +44,12 @@ struct TrackerSummary {
 /// scores: [run], of one tracker.
 TrackerSummary summarise(const std::string& name, const Scorer& scorer, const std::vector<const RunScore*>& scores,
                          const ScoringRule& rule);
+
+/// The squared errors of a run's scored steps, of all its targets; those of one phase.
+SquaredErrors squared_errors(const RunScore& score, std::size_t quantity);
+SquaredErrors squared_errors_in(const RunScore& score, std::size_t quantity, int phase);
+/// How many phases the runs tell apart.
+int phase_count(const std::vector<const RunScore*>& scores);
 
 struct PairedDifference {
   std::string quantity;

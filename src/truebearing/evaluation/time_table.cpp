@@ -98,7 +98,8 @@ std::string time_tables(const Comparison& comparison) {
   add_pairs(comparison, rows);
   if (rows.size() > 1) text.append("\n").append(aligned(rows));
 
-  const std::vector<Metric> timeless = kinds(comparison, [](const Metric& metric) { return !metric.time_s; });
+  const std::vector<Metric> timeless =
+      kinds(comparison, [](const Metric& metric) { return !metric.time_s && !is_track_metric(metric.name); });
   if (timeless.empty()) return text;
   rows.assign(1, {"tracker"});
   for (const Metric& kind : timeless) rows.back().push_back(title(kind));

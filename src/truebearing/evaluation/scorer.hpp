@@ -1,0 +1,51 @@
+// Scorer: a tracker's estimate against the truth, quantity by quantity. Where the components and quantities of its
+// state are found in the truth is settled once, by name.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "truebearing/core/bounded.hpp"
+#include "truebearing/core/state_space.hpp"
+#include "truebearing/tracker/step_record.hpp"
+
+namespace truebearing {
+
+struct RunScore;
+
+class Scorer {
+ public:
+  Scorer(const StateSpace& truth, const StateSpace& estimate);
+
+  const StateSpace& truth() const { return *truth_; }
+  /// The truth's quantities that the tracker estimates.
+  const std::vector<std::string>& quantities() const { return quantity_names_; }
+  /// Place of a quantity in quantities(), or nothing.
+  std::optional<std::size_t> quantity(const std::string& name) const;
+  /// How many components the NEES is taken over: its expected value for a consistent tracker.
+  int dimension() const { return static_cast<int>(truth_index_.size()); }
+  /// The same for one quantity.
+  int dimension(std::size_t quantity) const { return static_cast<int>(quantities_[quantity].size()); }
+
+  /// The 2-norm of truth - estimate in that quantity, in its unit.
+  double error(std::size_t quantity, const BoundedVector& truth, const BoundedVector& estimate) const;
+  /// The value of a quantity of one component in the truth and in an estimate, in its unit.
+  double true_value(std::size_t quantity, const BoundedVector& truth) const;
+  double estimated_value(std::size_t quantity, const BoundedVector& estimate) const;
+
+  void prepare(RunScore& score, std::size_t steps, std::size_t targets = 1) const;
+  void score_step(const BoundedVector& truth, const StepRecord& record, std::size_t place, RunScore& score) const;
+
+ private:
+  BoundedVector difference(const BoundedVector& truth, const BoundedVector& estimate) const;
+
+  const StateSpace* truth_;
+  std::vector<int> truth_index_;     // of each component that both have
+  std::vector<int> estimate_index_;  // its place in the estimate
+  std::vector<std::string> quantity_names_;
+  std::vector<std::vector<int>> quantities_;  // places in the two lists above
+  std::vector<double> scales_;                // [quantity]: from the unit of the components to its own
+};
+
+}  // namespace truebearing

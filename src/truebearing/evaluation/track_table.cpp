@@ -1,0 +1,90 @@
+#include "truebearing/evaluation/track_table.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <vector>
+
+#include "truebearing/evaluation/text_table.hpp"
+
+namespace truebearing {
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+
+const Metric* find(const std::vector<Metric>& metrics, const std::string& name) {
+  const auto found = std::find_if(metrics.begin(), metrics.end(), [&](const Metric& m) { return m.name == name; });
+  return found == metrics.end() ? nullptr : &*found;
+}
+
+bool is_count(const Metric& metric) {
+  return metric.unit == "runs";
+}
+
+// The figures of any tracker, each once; those of clean runs first, as track_metrics gives them.
+std::vector<Metric> columns_of(const Comparison& comparison) {
+  std::vector<Metric> columns;
+  for (const TrackerSummary& summary : comparison.trackers)
+    for (const Metric& metric : summary.metrics)
+      if (is_track_metric(metric.name) && !find(columns, metric.name)) columns.push_back(metric);
+  return columns;
+}
+
+std::string title(const Metric& metric) {
+  std::string words = metric.name;
+  std::replace(words.begin(), words.end(), '_', ' ');
+  const bool plain = is_count(metric) || metric.unit == "share" || metric.unit == "1";
+  return plain ? words : words + " " + metric.unit;
+}
+
+std::string tracker_rows(const Comparison& comparison) {
+  const std::vector<Metric> columns = columns_of(comparison);
+  if (columns.empty()) return {};
+  Rows rows{{"tracks"}};
+  for (const Metric& column : columns) {
+    rows[0].push_back(title(column));
+    if (!is_count(column)) rows[0].push_back("+-");
+  }
+  for (const TrackerSummary& summary : comparison.trackers) {
+    rows.push_back({summary.name});
+    for (const Metric& column : columns) {
+      const Metric* metric = find(summary.metrics, column.name);
+      if (is_count(column)) {
+        rows.back().push_back(metric ? fmt::format("{:.0f}", metric->value) : "-");
+        continue;
+      }
+      rows.back().push_back(metric ? figure(metric->value) : "-");
+      rows.back().push_back(metric ? figure(metric->se) : "-");
+    }
+  }
+  return fmt::format("\n{}", aligned(rows));
+}
+
+std::string phase_name(const CleanDifference& difference, const Comparison& comparison) {
+  const auto phase = static_cast<std::size_t>(difference.phase);
+  return phase < comparison.phases.size() ? comparison.phases[phase] : fmt::format("phase {}", phase + 1);
+}
+
+std::string pair_rows(const Comparison& comparison) {
+  Rows rows{{"paired, per-run MSE of runs clean with both", "", "mean", "+-", "in standard errors"}};
+  for (const Comparison::Pair& pair : comparison.pairs)
+    for (const CleanDifference& difference : pair.clean) {
+      std::string what = fmt::format("{} {}", name_of(difference.quantity), squared_unit_of(difference.quantity));
+      if (difference.phase >= 0) what += fmt::format(", {}", phase_name(difference, comparison));
+      rows.push_back({pair.a + " - " + pair.b, what, figure(difference.mean), figure(difference.se),
+                      difference.se > 0.0 ? fmt::format("{:+.1f}", difference.mean / difference.se) : "-"});
+    }
+  return rows.size() > 1 ? fmt::format("\n{}", aligned(rows)) : std::string();
+}
+
+}  // namespace
+
+std::string track_tables(const Comparison& comparison) {
+  return tracker_rows(comparison) + pair_rows(comparison);
+}
+
+std::string name_of(const CleanDifference& difference, const Comparison& comparison) {
+  const std::string name = difference.quantity + "2_clean";
+  return difference.phase < 0 ? name : name + "_" + phase_name(difference, comparison);
+}
+
+}  // namespace truebearing

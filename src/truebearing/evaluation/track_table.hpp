@@ -1,0 +1,17 @@
+// The figures of several targets as a table: swaps, losses, squared errors of clean runs, GOSPA.
+#pragma once
+
+#include <string>
+
+#include "truebearing/evaluation/comparison.hpp"
+
+namespace truebearing {
+
+/// A row per tracker, and a row per difference of clean runs of the pairs, each block with an empty line before it;
+/// empty where the comparison has no such figures.
+std::string track_tables(const Comparison& comparison);
+
+/// What the results call a difference of clean runs: "angle_deg2_clean", "angle_deg2_clean_crossing".
+std::string name_of(const CleanDifference& difference, const Comparison& comparison);
+
+}  // namespace truebearing

@@ -1,6 +1,7 @@
 #include "training/teacher.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -8,23 +9,31 @@
 #include <utility>
 
 #include "truebearing/core/error.hpp"
+#include "truebearing/core/suggestion.hpp"
 #include "truebearing/correction/feature_extractor.hpp"
+#include "truebearing/evaluation/scorer.hpp"
+#include "truebearing/evaluation/target_record.hpp"
 
 namespace truebearing {
 namespace {
 
-struct Row {
-  FeatureExtractor::Features features;
-  BoundedVector label;
-  BoundedVector reference;
-  BoundedMatrix covariance_factor;
-  BoundedMatrix reference_factor;
-};
+// What is taught of the steps of one run: the numbers of a TeacherSet's rows (features, label, reference, the two
+// factors), one row after another.
+using Rows = std::vector<double>;
+
+Eigen::Index row_size(Eigen::Index features, Eigen::Index state) {
+  return features + 2 * state + 2 * state * state;
+}
+
+void append(const auto& values, Rows& rows) {
+  for (Eigen::Index i = 0; i < values.size(); ++i) rows.push_back(values.reshaped()[i]);
+}
 
 // What one worker needs to make the rows of a run.
 class RowMaker {
  public:
-  RowMaker(const Ensemble& ensemble, const CorrectionSpec& correction, std::vector<int> truth_index)
+  RowMaker(const Ensemble& ensemble, const CorrectionSpec& correction, const StateSpace& truth_space,
+           std::vector<int> truth_index)
       : ensemble_(ensemble.clone()),
         from_step_(correction.training.from_step),
         every_s_(correction.training.every_s),
@@ -33,56 +42,78 @@ class RowMaker {
         source_(ensemble_.index(correction.covariance_of)),
         output_in_sigma_(correction.output_in_sigma),
         truth_index_(std::move(truth_index)),
-        extractor_(correction.features, ensemble_.tracker(base_).space(), correction.frame,
+        scorer_(truth_space, ensemble_.tracker(base_).space()),
+        prototype_(correction.features, ensemble_.tracker(base_).space(), correction.frame,
                    [&](const std::string& name) {
                      return ensemble_.tracker(name.empty() ? base_ : ensemble_.index(name)).blocks();
                    }) {
-    for (const std::string& name : extractor_.companions()) companions_.push_back(ensemble_.index(name));
+    for (const auto& [name, threshold] : correction.training.leave_out_beyond)
+      limits_.emplace_back(quantity(name), threshold);
+    for (const std::string& name : prototype_.companions()) companions_.push_back(ensemble_.index(name));
     companion_records_.resize(companions_.size());
   }
 
-  std::vector<Row> rows(const Recording& recording) {
-    std::vector<Row> rows;
-    double next_s = -std::numeric_limits<double>::infinity();
+  Rows rows(const Recording& recording) {
+    Rows rows;
     ensemble_.reset();
-    extractor_.reset();
+    tracks_.assign(recording.truth.size(), {prototype_});
     for (std::size_t step = 0; step < recording.measurements.size(); ++step) {
       ensemble_.step(recording.measurements[step]);
-      if (ensemble_.records(base_).empty()) continue;
-      const StepRecord& base = ensemble_.records(base_).front();
-      for (std::size_t c = 0; c < companions_.size(); ++c)
-        companion_records_[c] = ensemble_.record(companions_[c], base.track);
-      Row row;
-      extractor_.extract(base, companion_records_, row.features);  // every step, for the averages
-      const StepRecord* reference = ensemble_.record(reference_, base.track);
-      const StepRecord* source = ensemble_.record(source_, base.track);
-      if (static_cast<int>(step) + 1 < from_step_ || base.time_s < next_s || !reference || !source ||
-          base.status == StepStatus::failed)
-        continue;
-      // The first step in every interval, so that steps of another period do not drift through it.
-      if (every_s_ > 0.0) next_s = every_s_ * (std::floor(base.time_s / every_s_) + 1.0);
-      // T into the frame, then 1 / D.
-      const FrameRotation& rotation = extractor_.rotation();
-      BoundedVector scale = BoundedVector::Ones(base.x.size());
-      if (output_in_sigma_) scale = rotation.covariance(base.P).diagonal().cwiseSqrt().cwiseInverse();
-      const BoundedVector truth = recording.truth.front().x[step](truth_index_);
-      row.label = scale.cwiseProduct(rotation.vector(truth - base.x));
-      row.reference = scale.cwiseProduct(rotation.vector(reference->x - base.x));
-      const auto scaled = [&](const BoundedMatrix& P) -> BoundedMatrix {
-        return scale.asDiagonal() * rotation.covariance(P) * scale.asDiagonal();
-      };
-      const Eigen::LLT<BoundedMatrix> covariance(scaled(source->P)), reference_covariance(scaled(reference->P));
-      if (!row.features.allFinite() || !row.label.allFinite() || covariance.info() != Eigen::Success ||
-          reference_covariance.info() != Eigen::Success)
-        continue;
-      row.covariance_factor = covariance.matrixL();
-      row.reference_factor = reference_covariance.matrixL();
-      rows.push_back(row);
+      for (std::size_t target = 0; target < tracks_.size(); ++target)
+        if (const StepRecord* base = target_record(recording, target, ensemble_.records(base_)))
+          take(*base, recording.truth[target].x[step], static_cast<int>(step) + 1 >= from_step_, tracks_[target], rows);
     }
     return rows;
   }
 
  private:
+  // One target's: features remember their track.
+  struct Track {
+    FeatureExtractor extractor;
+    double next_s = -std::numeric_limits<double>::infinity();  // time of the next step to be taught
+  };
+
+  std::size_t quantity(const std::string& name) const {
+    if (const auto found = scorer_.quantity(name)) return *found;
+    throw InputError("training.leave_out_beyond", "names no quantity of the truth and the base: \"" + name + "\"",
+                     suggestion(name, scorer_.quantities()));
+  }
+
+  bool is_beyond(const BoundedVector& truth, const StepRecord& base) const {
+    return std::any_of(limits_.begin(), limits_.end(),
+                       [&](const auto& limit) { return !(scorer_.error(limit.first, truth, base.x) <= limit.second); });
+  }
+
+  void take(const StepRecord& base, const BoundedVector& true_state, bool is_taught, Track& track, Rows& rows) {
+    for (std::size_t c = 0; c < companions_.size(); ++c)
+      companion_records_[c] = ensemble_.record(companions_[c], base.track);
+    FeatureExtractor::Features features;
+    track.extractor.extract(base, companion_records_, features);  // every step, for the averages
+    const StepRecord* reference = ensemble_.record(reference_, base.track);
+    const StepRecord* source = ensemble_.record(source_, base.track);
+    if (!is_taught || base.time_s < track.next_s || !reference || !source || base.status == StepStatus::failed) return;
+    // The first step in every interval, so that steps of another period do not drift through it.
+    if (every_s_ > 0.0) track.next_s = every_s_ * (std::floor(base.time_s / every_s_) + 1.0);
+    // T into the frame, then 1 / D.
+    const FrameRotation& rotation = track.extractor.rotation();
+    BoundedVector scale = BoundedVector::Ones(base.x.size());
+    if (output_in_sigma_) scale = rotation.covariance(base.P).diagonal().cwiseSqrt().cwiseInverse();
+    const BoundedVector truth = true_state(truth_index_);
+    const BoundedVector label = scale.cwiseProduct(rotation.vector(truth - base.x));
+    const auto scaled = [&](const BoundedMatrix& P) -> BoundedMatrix {
+      return scale.asDiagonal() * rotation.covariance(P) * scale.asDiagonal();
+    };
+    const Eigen::LLT<BoundedMatrix> covariance(scaled(source->P)), reference_covariance(scaled(reference->P));
+    if (!features.allFinite() || !label.allFinite() || covariance.info() != Eigen::Success ||
+        reference_covariance.info() != Eigen::Success || is_beyond(true_state, base))
+      return;
+    append(features, rows);
+    append(label, rows);
+    append(BoundedVector(scale.cwiseProduct(rotation.vector(reference->x - base.x))), rows);
+    append(BoundedMatrix(covariance.matrixL()), rows);
+    append(BoundedMatrix(reference_covariance.matrixL()), rows);
+  }
+
   Ensemble ensemble_;
   int from_step_;
   double every_s_;
@@ -90,8 +121,11 @@ class RowMaker {
   int reference_;
   int source_;
   bool output_in_sigma_;
-  std::vector<int> truth_index_;  // of each component of the base's state
-  FeatureExtractor extractor_;
+  std::vector<int> truth_index_;                        // of each component of the base's state
+  Scorer scorer_;                                       // of the base
+  std::vector<std::pair<std::size_t, double>> limits_;  // of its errors, by quantity
+  FeatureExtractor prototype_;
+  std::vector<Track> tracks_;  // [target]
   std::vector<int> companions_;
   std::vector<const StepRecord*> companion_records_;
 };
@@ -121,34 +155,35 @@ TeacherSet collect_teacher_set(const Ensemble& ensemble, const CorrectionSpec& c
                        "a truth that has every component of the state");
   }
   const std::size_t runs = correction.training.runs;
-  std::vector<std::vector<Row>> by_run(runs);
+  std::vector<Rows> by_run(runs);
   std::vector<std::optional<RowMaker>> makers(worker_count(options.threads));
   monte_carlo(
       runs, options.threads,
       [&](std::size_t run, std::size_t worker) {
-        if (!makers[worker]) makers[worker].emplace(ensemble, correction, truth_index);
+        if (!makers[worker]) makers[worker].emplace(ensemble, correction, scenario.truth_space(), truth_index);
         by_run[run] = makers[worker]->rows(scenario.simulate({options.seed, options.role, run}));
       },
       options.progress);
 
-  Eigen::Index total = 0;
-  for (const std::vector<Row>& rows : by_run) total += static_cast<Eigen::Index>(rows.size());
-  if (total == 0)
-    throw InputError("training", "no step of the training runs can be taught", "records, truth and finite features");
   const Eigen::Index d = static_cast<Eigen::Index>(correction.features.size());
   const Eigen::Index n = space.size();
+  Eigen::Index total = 0;
+  for (const Rows& rows : by_run) total += static_cast<Eigen::Index>(rows.size()) / row_size(d, n);
+  if (total == 0)
+    throw InputError("training", "no step of the training runs can be taught", "records, truth and finite features");
   TeacherSet set{correction.features,       Eigen::MatrixXd(total, d),     Eigen::MatrixXd(total, n),
                  Eigen::MatrixXd(total, n), Eigen::MatrixXd(total, n * n), Eigen::MatrixXd(total, n * n)};
   Eigen::Index next = 0;
-  for (const std::vector<Row>& rows : by_run)
-    for (const Row& row : rows) {
-      set.X.row(next) = row.features.transpose();
-      set.Y.row(next) = row.label.transpose();
-      set.reference.row(next) = row.reference.transpose();
-      set.covariance_factors.row(next) = row.covariance_factor.reshaped().transpose();
-      set.reference_factors.row(next) = row.reference_factor.reshaped().transpose();
-      ++next;
+  for (const Rows& rows : by_run) {
+    const Eigen::Index count = static_cast<Eigen::Index>(rows.size()) / row_size(d, n);
+    const Eigen::Map<const Eigen::MatrixXd> columns(rows.data(), row_size(d, n), count);  // a row to a column
+    Eigen::Index part = 0;
+    for (Eigen::MatrixXd* matrix : {&set.X, &set.Y, &set.reference, &set.covariance_factors, &set.reference_factors}) {
+      matrix->middleRows(next, count) = columns.middleRows(part, matrix->cols()).transpose();
+      part += matrix->cols();
     }
+    next += count;
+  }
   return set;
 }
 

@@ -1,5 +1,5 @@
 // The teacher: the same simulator, trackers and feature extractor as at run time, with the labels (truth minus
-// estimate) joined afterwards by time.
+// estimate) joined afterwards by time and, where there are several targets, by track.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,9 +14,9 @@
 
 namespace truebearing {
 
-/// One row per taught step of a run, run after run. d features, n state components. Everything but the features is in
-/// the units of the network's output: in the correction's frame, and where the correction says so in standard
-/// deviations of the base there.
+/// One row per taught step of a run, and at one step per target in their order, run after run. d features, n state
+/// components. Everything but the features is in the units of the network's output: in the correction's frame, and
+/// where the correction says so in standard deviations of the base there.
 struct TeacherSet {
   std::vector<FeatureSpec> features;
   Eigen::MatrixXd X;          ///< (N x d), features in their units
@@ -39,8 +39,9 @@ struct TeacherOptions {
 };
 
 /// Runs `ensemble`, which has the members that `correction` names, over correction.training.runs runs of the scenario.
-/// Steps without a record, with unknown truth or with features that are not finite are left out. Throws InputError
-/// where no step is left or the truth lacks a component of the base's state, all found by name.
+/// Steps without a record, with unknown truth, with features that are not finite or with an error of the base beyond
+/// correction.training.leave_out_beyond are left out. Throws InputError where no step is left, or where the truth lacks
+/// a component of the base's state or a quantity of those limits, all found by name.
 TeacherSet collect_teacher_set(const Ensemble& ensemble, const CorrectionSpec& correction, const Scenario& scenario,
                                const TeacherOptions& options);
 

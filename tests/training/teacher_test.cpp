@@ -5,6 +5,7 @@
 
 #include <set>
 
+#include "tests/support/angle_tracks.hpp"
 #include "tests/support/correction_models.hpp"
 #include "tests/support/error_message.hpp"
 #include "tests/support/line_trackers.hpp"
@@ -165,6 +166,54 @@ TEST(Teacher, DrawsItsOwnRoleOnly) {
     EXPECT_EQ(key[0], static_cast<std::uint64_t>(Role::training));
     EXPECT_FALSE(validation.keys.contains(key));
   }
+}
+
+// A base that says `told` of targets by their angles; its NIS is the square of what it says, in degrees.
+TeacherSet teach(const testing::AnglesOfTracks& told, const Recording& recording,
+                 const std::vector<std::pair<std::string, double>>& leave_out_beyond = {}) {
+  Ensemble ensemble;
+  ensemble.add("told", std::make_unique<testing::ToldTracker>(told));
+  CorrectionSpec correction;
+  correction.base = correction.reference = correction.covariance_of = "told";
+  correction.features = {{.kind = FeatureKind::log_step}, {.kind = FeatureKind::log_mean_nis, .offset = 1.0}};
+  correction.training.runs = 2;
+  correction.training.leave_out_beyond = leave_out_beyond;
+  return collect_teacher_set(ensemble, correction, testing::AngleScenario(recording), {});
+}
+
+void expect_labels(const TeacherSet& set, const std::vector<double>& wanted_deg) {
+  ASSERT_EQ(set.Y.rows(), 2 * std::ssize(wanted_deg)) << "two runs";
+  for (Eigen::Index row = 0; row < set.Y.rows(); ++row)
+    EXPECT_NEAR(degrees(set.Y(row, 0)), wanted_deg[static_cast<std::size_t>(row) % wanted_deg.size()], 1e-12) << row;
+}
+
+TEST(Teacher, EveryTrackIsTaughtTheTruthOfItsNumber) {
+  const Recording recording = testing::angle_recording({{2, {10, 10, 10}}, {5, {30, kNaN, 30}}});
+  const TeacherSet set = teach({{1, {9, 9, 9}}, {2, {11, 12, 13}}, {5, {kNaN, 31, 33}}}, recording);
+  expect_labels(set, {-1, -2, -3, -3});
+}
+
+TEST(Teacher, FeaturesRememberEveryTrackByItself) {
+  const Recording recording = testing::angle_recording({{0, {0, 0, 0}}, {1, {30, kNaN, 30}}});
+  const TeacherSet set = teach({{0, {1, 2, 3}}, {1, {kNaN, 20, 40}}}, recording);
+  // Steps of track 0 at rows 0, 1 and 2; track 1 has its second step at row 3, the first had no truth.
+  for (const Eigen::Index row : {0, 1, 2}) EXPECT_EQ(set.X(row, 0), std::log(static_cast<double>(row + 1)));
+  EXPECT_EQ(set.X(3, 0), std::log(2.0)) << "features see the steps that are not taught";
+  EXPECT_NEAR(set.X(2, 1), std::log(1.0 + (1.0 + 4.0 + 9.0) / 3.0), 1e-12);
+  EXPECT_NEAR(set.X(3, 1), std::log(1.0 + (400.0 + 1600.0) / 2.0), 1e-12);
+}
+
+TEST(Teacher, LeavesOutStepsWithErrorsBeyondTheLimit) {
+  const Recording recording = testing::angle_recording({{0, {0, 0, 0}}, {1, {30, 30, 30}}});
+  const testing::AnglesOfTracks swapped{{0, {1, 30, -2}}, {1, {29, 0, 34}}};
+  expect_labels(teach(swapped, recording), {-1, 1, -30, 30, 2, -4});
+  const TeacherSet set = teach(swapped, recording, {{"angle_deg", 3.0}});
+  expect_labels(set, {-1, 1, 2});
+  EXPECT_EQ(set.X(2, 0), std::log(3.0)) << "but features see them";
+  EXPECT_THAT(error_message([&] {
+                teach(swapped, recording, {{"angle_rad", 3.0}});
+              }),
+              ::testing::AllOf(HasSubstr("leave_out_beyond"), HasSubstr("angle_deg")));
 }
 
 TEST(Teacher, TruthMayHaveMoreThanTheBase) {

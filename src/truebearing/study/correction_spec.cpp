@@ -57,6 +57,11 @@ TrainingSpec read_training(TableReader& table) {
   training.runs = static_cast<std::size_t>(table.integer("runs", 1, 1000000));
   training.from_step = static_cast<int>(table.integer_or("from_step", 1, 1, 1000000));
   training.every_s = table.number_or("every_s", 0.0, kNonNegative);
+  if (auto limits = table.table_if_present("leave_out_beyond")) {
+    for (const std::string& quantity : limits->keys())
+      training.leave_out_beyond.emplace_back(quantity, limits->number(quantity, kPositive));
+    limits->finish();
+  }
   training.mirror = read_mirror(table);
   if (table.has("scenario")) training.scenario = table.resolve(table.text("scenario"));
   if (table.has("covariance_scenario")) training.covariance_scenario = table.resolve(table.text("covariance_scenario"));

@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "truebearing/correction/feature.hpp"
@@ -25,6 +26,9 @@ struct TrainingSpec {
   std::size_t runs = 400;
   int from_step = 1;     ///< number of the first step taught, counted from 1
   double every_s = 0.0;  ///< at most one step in as many seconds is taught; 0: every step
+  /// Steps at which the base's error in a quantity exceeds its threshold are not taught: a track that has changed over
+  /// to another target teaches nonsense.
+  std::vector<std::pair<std::string, double>> leave_out_beyond = {};
   enum class Mirror {
     none,
     images,  ///< teach every run and its mirror image

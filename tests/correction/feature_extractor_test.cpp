@@ -133,6 +133,46 @@ TEST(FeatureExtractor, EstimateIsScaledAndMayBeACompanions) {
   EXPECT_EQ(feature(theirs, step(0.0, 1.0, 0.0, 30.0), {&companion}), 12.5);
 }
 
+StepRecord beside(double difference_m, double closeness) {
+  StepRecord record = step(1.0, 1.0);
+  record.P(0, 0) = 25.0;
+  record.neighbour = Neighbour{1, Eigen::Vector2d(difference_m, -2.0), closeness, false};
+  return record;
+}
+
+TEST(FeatureExtractor, NeighbourCountsAsFarAsItIsClose) {
+  const RecordBlocks blocks{.neighbour = true};
+  FeatureSpec spec{.kind = FeatureKind::neighbour_difference, .component = "position_m", .scale = 4.0};
+  FeatureExtractor closeness = extractor_of({{.kind = FeatureKind::neighbour_closeness}}, blocks),
+                   position = extractor_of({spec}, blocks);
+  EXPECT_EQ(feature(closeness, beside(30.0, 0.5)), 0.5);
+  EXPECT_EQ(feature(position, beside(30.0, 0.5)), 0.5 * 30.0 / 4.0);
+  EXPECT_EQ(feature(closeness, step(1.0, 1.0)), 0.0) << "of no neighbour, also after one";
+  EXPECT_EQ(feature(position, step(1.0, 1.0)), 0.0);
+  spec.scale_is_sigma = true;
+  FeatureExtractor sigmas = extractor_of({spec}, blocks);
+  EXPECT_EQ(feature(sigmas, beside(30.0, 0.5)), 0.5 * 30.0 / 5.0);
+  spec = {.kind = FeatureKind::neighbour_difference, .component = "velocity_mps", .scale = 4.0};
+  FeatureExtractor velocity = extractor_of({spec}, blocks);
+  EXPECT_EQ(feature(velocity, beside(30.0, 1.0)), -0.5);
+}
+
+TEST(FeatureExtractor, NeighbourIsNeededInTheRecords) {
+  EXPECT_THAT(error_message([] { extractor_of({{.kind = FeatureKind::neighbour_closeness}}); }),
+              HasSubstr("needs the neighbour in the records of the base tracker"));
+  EXPECT_THAT(error_message([] {
+                extractor_of({{.kind = FeatureKind::neighbour_difference, .component = "height_m", .scale = 1.0}},
+                             {.neighbour = true});
+              }),
+              HasSubstr("height_m"));
+}
+
+TEST(FeatureExtractor, NeighboursDifferenceIsThatOfAMirroredPair) {
+  const FeatureSpec difference{.kind = FeatureKind::neighbour_difference, .component = "position_m"};
+  EXPECT_EQ(mirror_parity(difference, Frame::state, line_space()), -1);
+  EXPECT_EQ(mirror_parity({.kind = FeatureKind::neighbour_closeness}, Frame::state, line_space()), +1);
+}
+
 TEST(FeatureExtractor, RejectedMeasurementDoesNotCount) {
   FeatureExtractor extractor = extractor_of({{.kind = FeatureKind::log_mean_nis, .offset = 0.05}});
   const double before = feature(extractor, step(2.0, 1.0));
@@ -254,7 +294,7 @@ TEST(FeatureExtractor, NumberOfFeaturesIsBounded) {
 }
 
 TEST(Feature, NamesGoThereAndBackAndMisspeltOnesAreSuggested) {
-  EXPECT_EQ(feature_kind_names().size(), 22u);
+  EXPECT_EQ(feature_kind_names().size(), 24u);
   for (const std::string& name : feature_kind_names()) EXPECT_EQ(to_string(feature_kind(name)), name);
   EXPECT_THAT(error_message([] { feature_kind("inovation"); }), HasSubstr("did you mean \"innovation\""));
 }
@@ -271,7 +311,14 @@ TEST(Feature, ParityIsWhatAMirroredTargetDoes) {
                      .alpha = 0.3,
                      .offset = 0.1});
   }
-  FeatureExtractor extractor = extractor_of(specs), mirrored = extractor_of(specs);
+  RecordBlocks blocks = kAll;
+  blocks.neighbour = true;
+  FeatureExtractor extractor = extractor_of(specs, blocks), mirrored = extractor_of(specs, blocks);
+  // The companion stands for the nearest other target too.
+  const auto with_neighbour = [](StepRecord record, const StepRecord& other) {
+    record.neighbour = Neighbour{1, other.x - record.x, 0.25, false};
+    return record;
+  };
   RandomStream random({}, StreamId::test);
   testing::RadarFilter radar;
   const auto tracker = radar.tracker(), mirror_tracker = radar.tracker();
@@ -282,8 +329,9 @@ TEST(Feature, ParityIsWhatAMirroredTargetDoes) {
     const double z = 200.0 * k + 3000.0 * random.normal();
     const std::vector<const StepRecord*> companion{&wide->step(testing::position(k, z))[0]};
     const std::vector<const StepRecord*> mirror_companion{&mirror_wide->step(testing::position(k, -z))[0]};
-    extractor.extract(tracker->step(testing::position(k, z))[0], companion, a);
-    mirrored.extract(mirror_tracker->step(testing::position(k, -z))[0], mirror_companion, b);
+    extractor.extract(with_neighbour(tracker->step(testing::position(k, z))[0], *companion[0]), companion, a);
+    mirrored.extract(with_neighbour(mirror_tracker->step(testing::position(k, -z))[0], *mirror_companion[0]),
+                     mirror_companion, b);
     for (Eigen::Index i = 0; i < a.size(); ++i)
       ASSERT_EQ(b[i], mirror_parity(specs[static_cast<std::size_t>(i)], Frame::state, line_space()) * a[i])
           << describe(specs[static_cast<std::size_t>(i)]);

@@ -58,6 +58,17 @@ TEST(ModelFile, SaveLoadSaveIsByteIdentical) {
   EXPECT_EQ(loaded.inflation, original.inflation);
 }
 
+TEST(ModelFile, FeaturesOfANeighbourAreKept) {
+  CorrectionModel model = model_to_save();
+  model.features[0] = {.kind = FeatureKind::neighbour_closeness};
+  model.features[1] = {.kind = FeatureKind::neighbour_difference, .component = "velocity_mps", .scale = 0.1};
+  model.features[2] = {.kind = FeatureKind::neighbour_difference, .component = "position_m", .scale_is_sigma = true};
+  const std::string saved = model_text(model);
+  const CorrectionModel loaded = parse_model(saved, "model.json");
+  EXPECT_EQ(loaded.features, model.features);
+  EXPECT_EQ(model_text(loaded), saved);
+}
+
 TEST(ModelFile, WithoutGateAndKappaItIsByteIdenticalToo) {
   CorrectionModel model = model_to_save();
   model.gate.reset();

@@ -15,6 +15,7 @@ constexpr RecordBlocks kPrediction{.prediction = true};
 constexpr RecordBlocks kInnovation{.innovation = true};
 constexpr RecordBlocks kGain{.gain = true};
 constexpr RecordBlocks kModes{.mode_probabilities = true};
+constexpr RecordBlocks kNeighbour{.neighbour = true};
 
 /// How a feature answers to a mirrored target.
 enum class Mirror {
@@ -36,7 +37,7 @@ constexpr auto kComponent = FeatureNeeds::Component::required;
 constexpr auto kAxis = FeatureNeeds::Component::optional;
 
 // One line per kind: everything the house knows of it besides its formula, which is in feature_extractor.cpp.
-constexpr std::array<Kind, 22> kKinds{{
+constexpr std::array<Kind, 24> kKinds{{
     {FeatureKind::log_step, "log_step", Mirror::even, {.blocks = kNothing}},
     {FeatureKind::gain, "gain", Mirror::even, {.component = kComponent, .blocks = kGain}},
     {FeatureKind::residual, "residual", Mirror::by_component, {.component = kComponent, .blocks = kInnovation}},
@@ -105,6 +106,11 @@ constexpr std::array<Kind, 22> kKinds{{
       .mode = true,
       .plane = true,
       .blocks = kModes}},
+    {FeatureKind::neighbour_closeness, "neighbour_closeness", Mirror::even, {.blocks = kNeighbour}},
+    {FeatureKind::neighbour_difference,
+     "neighbour_difference",
+     Mirror::by_component,
+     {.component = kComponent, .scale = true, .blocks = kNeighbour}},
 }};
 
 const Kind& entry(FeatureKind kind) {
@@ -197,6 +203,10 @@ std::string describe(const FeatureSpec& feature) {
     case FeatureKind::velocity_change:
       return fmt::format("change{} in {} against mode {}, average {}", of, feature.component, feature.mode,
                          feature.alpha);
+    case FeatureKind::neighbour_closeness:
+      return "closeness of the neighbour";
+    case FeatureKind::neighbour_difference:
+      return "difference of the neighbour in " + feature.component;
   }
   return {};
 }

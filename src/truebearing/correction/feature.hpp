@@ -35,8 +35,10 @@ enum class FeatureKind {
   own_velocity,     ///< the sensor's velocity[component] / scale; plane space
   speed_change,  ///< ln(speed / m), m <- m + alpha mu[mode] (speed - m): against the speed before the target left that
                  ///< mode; plane space
-  velocity_change  ///< (v - m)[component] / scale, m <- m + alpha mu[mode] (v - m): against the velocity before; plane
-                   ///< space
+  velocity_change,  ///< (v - m)[component] / scale, m <- m + alpha mu[mode] (v - m): against the velocity before; plane
+                    ///< space
+  neighbour_closeness,  ///< how near the nearest other target is, in (0, 1]; 0 where the tracker follows no other
+  neighbour_difference  ///< closeness (x_neighbour[component] - x[component]) / scale; 0 where there is no other
 };
 
 /// Which feature, and its constants. What a kind does not use stays at its default. Components are those of the frame

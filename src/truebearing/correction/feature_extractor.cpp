@@ -52,6 +52,7 @@ void check(const FeatureSpec& feature, const StateSpace& space, const StateSpace
   if (measured && &space != &components && !blocks.measures_position)
     throw InputError(where, "has no direction: what is measured is not a position", "a tracker of positions");
   if (needs.blocks.mode_probabilities && !blocks.mode_probabilities) throw missing("mode probabilities");
+  if (needs.blocks.neighbour && !blocks.neighbour) throw missing("neighbour");
 }
 
 constexpr double kLeastRange_m = 1.0;
@@ -173,6 +174,8 @@ void FeatureExtractor::remember(Term& term, const StepRecord& record) {
     case FeatureKind::log_time:
     case FeatureKind::bearing_rate:
     case FeatureKind::own_velocity:
+    case FeatureKind::neighbour_closeness:
+    case FeatureKind::neighbour_difference:
       break;
   }
 }
@@ -247,6 +250,10 @@ double FeatureExtractor::value(const Term& term, const StepRecord& base, const S
     case FeatureKind::velocity_change:
       if (term.used == 0.0) return 0.0;
       return rotation_.component(BoundedVector(record.x.tail<2>() - term.memory), c % 2) / term.scale;
+    case FeatureKind::neighbour_closeness:
+      return base.neighbour ? base.neighbour->closeness : 0.0;
+    case FeatureKind::neighbour_difference:
+      return base.neighbour ? base.neighbour->closeness * scaled(in_frame(base.neighbour->difference)) : 0.0;
   }
   return kNaN;
 }

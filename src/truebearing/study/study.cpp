@@ -8,6 +8,7 @@
 #include "truebearing/correction/corrected_tracker.hpp"
 #include "truebearing/correction/model_file.hpp"
 #include "truebearing/study/configuration_text.hpp"
+#include "truebearing/study/track_scoring.hpp"
 #include "truebearing/study/tracker_registry.hpp"
 #include "truebearing/tracker/recorded_tracker.hpp"
 #include "truebearing/tracker/step_log_scenario.hpp"
@@ -132,6 +133,7 @@ void Study::read_scoring(TableReader scoring) {
       pairs_.emplace_back(known("pairs", pair.substr(0, dash)), known("pairs", pair.substr(dash + 3)));
     }
   timed_ = read_timed_scoring(scoring, scenario_->truth_space(), scoring_);
+  read_track_scoring(scoring, scenario_->truth_space(), scoring_);
   if (!timed_.global_minimum.empty()) known("global_minimum", timed_.global_minimum);
   if (scoring.has("bounds"))
     for (const std::string& bound : scoring.texts("bounds")) bounds_.push_back(known("bounds", bound));
@@ -189,6 +191,10 @@ void Study::check_trackers() {
       if (tracker(member).correction)
         throw InputError(path_.string() + ": trackers." + spec.name,
                          "looks at \"" + member + "\", which is itself corrected", "trackers of other kinds");
+    for (const auto& [quantity, threshold] : spec.correction->training.leave_out_beyond)
+      if (scenario_->truth_space().quantity_index(quantity) < 0)
+        throw InputError(path_.string() + ": trackers." + spec.name + ".training.leave_out_beyond." + quantity,
+                         "is no quantity of the scenario's truth");
     // Features that the records cannot give are refused here, not at the first step.
     const auto made = [&](const std::string& name) {
       const TrackerSpec& member = tracker(name.empty() ? spec.correction->base : name);

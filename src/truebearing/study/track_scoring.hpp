@@ -1,0 +1,17 @@
+// The part of a study's table [scoring] that is of several targets:
+//   tracks = { quantity = "angle_deg", bad = 3.0, last_steps = 5, excursion = 6.0 }
+//                                         swaps, losses and the squared errors of clean runs; last_steps is optional
+//   gospa = { quantity = "angle_deg", cutoff = 5.0 }
+//                                         of targets that appear and vanish: tracks belong to targets by assignment, so
+//                                         that it does not go with `tracks`, which tells them by their numbers
+#pragma once
+
+#include "truebearing/evaluation/run_score.hpp"
+#include "truebearing/io/table_reader.hpp"
+
+namespace truebearing {
+
+/// Asks for the keys above, which go to `rule`. `truth` is the space of the scenario's.
+void read_track_scoring(TableReader& scoring, const StateSpace& truth, ScoringRule& rule);
+
+}  // namespace truebearing

@@ -31,9 +31,10 @@ void InnovationConsistency::add(const StepRecord& record) {
   nis_sum_ += innovation.nis;
   if (innovation.z.size() > 0 && !std::isfinite(innovation.z[0])) return;
   const double e = innovation.nu[0] / std::sqrt(innovation.S(0, 0));
-  if (steps_ > 1) product_sum_ += e * last_e_;
+  double& last_e = last_e_[record.track];
+  if (steps_ > 1) product_sum_ += e * last_e;
   square_sum_ += e * e;
-  last_e_ = e;
+  last_e = e;
 }
 
 double InnovationConsistency::nis_ratio() const {

@@ -2,6 +2,8 @@
 // (Bar-Shalom, Li and Kirubarajan 2001, sec. 5.4.2.)
 #pragma once
 
+#include <map>
+
 #include "truebearing/tracker/step_record.hpp"
 
 namespace truebearing {
@@ -16,8 +18,8 @@ class InnovationConsistency {
   /// The interval that holds the mean NIS ratio of a consistent tracker with 95 %.
   double nis_ratio_low() const;
   double nis_ratio_high() const;
-  /// Correlation of successive normalised innovations (first component); within +-correlation_limit() with 95 % where
-  /// they are white.
+  /// Correlation of successive normalised innovations of a track (first component); within +-correlation_limit() with
+  /// 95 % where they are white.
   double correlation() const;
   double correlation_limit() const;
   /// True where the NIS of the first steps, used or gated, is so large or so small that a wrong unit or a wrong column
@@ -33,7 +35,7 @@ class InnovationConsistency {
   int first_steps_ = 0;
   double first_freedom_ = 0.0;
   double first_nis_sum_ = 0.0;
-  double last_e_ = 0.0;
+  std::map<int, double> last_e_;  // of each track, 0 before the first
   double product_sum_ = 0.0;
   double square_sum_ = 0.0;
 };

@@ -9,4 +9,5 @@ find_package(NLopt REQUIRED)
 find_package(Boost 1.74 REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(GEOGRAPHICLIB REQUIRED IMPORTED_TARGET geographiclib)  # Debian has no CMake package of it
+pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5>=1.10)  # CMake's own module of it wants a C compiler
 find_path(TRUEBEARING_RANDOM123 Random123/philox.h REQUIRED)  # headers only, without a CMake package

@@ -53,8 +53,15 @@ inline bool measures_bearing_and_frequency(const std::vector<std::string>& measu
   return measured.size() == 2 && measured[0] == "bearing_deg" && measured[1] == "frequency_hz";
 }
 
+/// Whether it is a line array's.
+inline bool measures_snapshots(const std::vector<std::string>& measured) {
+  return measured.size() == 1 && measured[0] == "snapshots";
+}
+
 /// Whether there is nothing in a measurement of the recording that a tracker could use.
 inline bool is_unusable(const Recording& recording, const Measurement& measurement) {
+  if (measures_snapshots(recording.measured))
+    return !measurement.snapshots || !measurement.snapshots->has_finite_snapshot();
   if (!measures_bearing_and_frequency(recording.measured)) return measurement.is_missing();
   return measurement.z.size() == 0 || measurement.z.array().isNaN().all();
 }

@@ -2,6 +2,8 @@
 // views of memory that the Recording owns.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <complex>
 #include <span>
 
@@ -20,6 +22,18 @@ struct SnapshotBlock {
   std::span<const std::complex<double>> snapshot(int t) const {
     return values.subspan(static_cast<std::size_t>(t) * static_cast<std::size_t>(sensors),
                           static_cast<std::size_t>(sensors));
+  }
+
+  /// Whether every sensor gave something in that snapshot; in any of them.
+  bool is_finite(int t) const {
+    const auto finite = [](std::complex<double> r) { return std::isfinite(r.real()) && std::isfinite(r.imag()); };
+    const std::span<const std::complex<double>> r = snapshot(t);
+    return std::all_of(r.begin(), r.end(), finite);
+  }
+  bool has_finite_snapshot() const {
+    for (int t = 0; t < snapshots(); ++t)
+      if (is_finite(t)) return true;
+    return false;
   }
 };
 

@@ -87,6 +87,39 @@ TEST(InnovationConsistency, OfNothingIsNaN) {
   EXPECT_FALSE(c.is_implausible_at_start());
 }
 
+StepRecord record_of(int track, double nu) {
+  StepRecord record;
+  record.track = track;
+  record.innovation = Innovation{BoundedVector::Constant(1, 0.0), BoundedVector::Constant(1, nu),
+                                 BoundedMatrix::Constant(1, 1, 1.0), nu * nu};
+  return record;
+}
+
+TEST(InnovationConsistency, WhitenessIsThatOfEachTrack) {
+  RandomStream random({.seed = 7}, StreamId::test);
+  InnovationConsistency white, not_white;
+  double last = 0.0;
+  for (int k = 0; k < 2000; ++k) {
+    const double nu = random.normal();
+    white.add(record_of(0, nu));
+    white.add(record_of(1, nu));  // as its neighbour, but white in time
+    not_white.add(record_of(0, nu + last));
+    not_white.add(record_of(1, random.normal()));
+    last = nu;
+  }
+  EXPECT_EQ(white.steps(), 4000);
+  EXPECT_LT(std::abs(white.correlation()), std::sqrt(2.0) * white.correlation_limit()) << "of 2000 different ones";
+  EXPECT_GT(not_white.correlation(), 5.0 * not_white.correlation_limit()) << "though another comes between";
+}
+
+TEST(InnovationConsistency, WrongUnitIsImplausibleInTheFirstStepsOfEachTrack) {
+  InnovationConsistency c;
+  for (int k = 0; k < 100; ++k) c.add(record_of(0, 1.0));
+  EXPECT_FALSE(c.is_implausible_at_start());
+  for (int k = 0; k < 100; ++k) c.add(record_of(1, 1000.0));
+  EXPECT_TRUE(c.is_implausible_at_start());
+}
+
 TEST(InnovationConsistency, CoastedStepsDoNotCount) {
   InnovationConsistency c;
   const auto tracker = RadarFilter{}.tracker();

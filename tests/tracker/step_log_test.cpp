@@ -78,6 +78,29 @@ TEST(StepLog, WrittenAgainItIsTheSameText) {
   EXPECT_EQ(again.str(), writer.str());
 }
 
+TEST(StepLog, SeveralTracksOfOneTimeAndInnovationsWithoutMeasurementAreWritten) {
+  StepLogWriter writer(angle_space(), 1);
+  for (const double time_s : {1.0, 2.0})
+    for (const int track : {0, 1}) {
+      StepRecord record;
+      record.space = &angle_space();
+      record.time_s = time_s;
+      record.track = track;
+      record.x = Eigen::Vector2d(0.1 * track, time_s);
+      record.P = Eigen::Matrix2d::Identity();
+      record.innovation = Innovation{{}, BoundedVector::Constant(1, 0.5), BoundedMatrix::Constant(1, 1, 2.0), 0.125};
+      writer.add("array", record);
+    }
+  EXPECT_THAT(writer.str(), HasSubstr(",,0.5,2\n")) << "no z, but nu and S";
+  const StepLog log = parse(writer.str());
+  EXPECT_EQ(log.space, &angle_space());
+  ASSERT_EQ(log.records.size(), 4u);
+  EXPECT_EQ(log.records[1].track, 1);
+  EXPECT_EQ(log.records[1].time_s, 1.0);
+  EXPECT_EQ(log.records[2].track, 0);
+  EXPECT_EQ(log.records[3].x, Eigen::Vector2d(0.1, 2.0));
+}
+
 const std::string kHeader = "time_s,track,x_position_m,x_velocity_mps,P_1_1,P_1_2,P_2_2\n";
 
 TEST(StepLog, OfAnotherProgramNeedsOnlyStateAndCovariance) {

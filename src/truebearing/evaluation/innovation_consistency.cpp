@@ -20,7 +20,9 @@ void InnovationConsistency::add(const StepRecord& record) {
   if (!record.innovation) return;
   const Innovation& innovation = *record.innovation;
   const double freedom = freedom_of(innovation);
-  if (first_steps_ < kFirstSteps) {  // also those that a gate turned away: with a wrong unit it turns away all
+  Track& track = tracks_[record.track];
+  if (track.first_steps < kFirstSteps) {  // also those that a gate turned away: with a wrong unit it turns away all
+    ++track.first_steps;
     ++first_steps_;
     first_freedom_ += freedom;
     first_nis_sum_ += innovation.nis;
@@ -31,10 +33,9 @@ void InnovationConsistency::add(const StepRecord& record) {
   nis_sum_ += innovation.nis;
   if (innovation.z.size() > 0 && !std::isfinite(innovation.z[0])) return;
   const double e = innovation.nu[0] / std::sqrt(innovation.S(0, 0));
-  double& last_e = last_e_[record.track];
-  if (steps_ > 1) product_sum_ += e * last_e;
+  if (track.last_e) product_sum_ += e * *track.last_e;
   square_sum_ += e * e;
-  last_e = e;
+  track.last_e = e;
 }
 
 double InnovationConsistency::nis_ratio() const {
@@ -64,7 +65,7 @@ bool InnovationConsistency::is_implausible_at_start() const {
   constexpr double kFactor = 100.0;
   if (first_steps_ == 0) return false;
   if (first_nis_sum_ > kFactor * chi_square_quantile(0.975, first_freedom_)) return true;
-  return first_steps_ == kFirstSteps && first_nis_sum_ < chi_square_quantile(0.025, first_freedom_) / kFactor;
+  return first_steps_ >= kFirstSteps && first_nis_sum_ < chi_square_quantile(0.025, first_freedom_) / kFactor;
 }
 
 }  // namespace truebearing

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 
 #include "truebearing/tracker/step_record.hpp"
 
@@ -10,6 +11,7 @@ namespace truebearing {
 
 class InnovationConsistency {
  public:
+  /// Records of several tracks may alternate: whiteness is that of each track, StepRecord::track telling them apart.
   void add(const StepRecord& record);
 
   int steps() const { return steps_; }
@@ -18,24 +20,28 @@ class InnovationConsistency {
   /// The interval that holds the mean NIS ratio of a consistent tracker with 95 %.
   double nis_ratio_low() const;
   double nis_ratio_high() const;
-  /// Correlation of successive normalised innovations of a track (first component); within +-correlation_limit() with
-  /// 95 % where they are white.
+  /// Correlation of successive normalised innovations (first component); within +-correlation_limit() with 95 % where
+  /// they are white.
   double correlation() const;
   double correlation_limit() const;
-  /// True where the NIS of the first steps, used or gated, is so large or so small that a wrong unit or a wrong column
-  /// is likelier than chance.
+  /// True where the NIS of the tracks' first steps, used or gated, is so large or so small that a wrong unit or a wrong
+  /// column is likelier than chance.
   bool is_implausible_at_start() const;
 
  private:
-  static constexpr int kFirstSteps = 10;
+  static constexpr int kFirstSteps = 10;  // of each track
 
+  struct Track {
+    int first_steps = 0;
+    std::optional<double> last_e;
+  };
+  std::map<int, Track> tracks_;
   int steps_ = 0;
   double freedom_ = 0.0;
   double nis_sum_ = 0.0;
   int first_steps_ = 0;
   double first_freedom_ = 0.0;
   double first_nis_sum_ = 0.0;
-  std::map<int, double> last_e_;  // of each track, 0 before the first
   double product_sum_ = 0.0;
   double square_sum_ = 0.0;
 };

@@ -183,7 +183,8 @@ std::string StepLogWriter::str() const {
     for (int i = 0; i < states_; ++i)
       for (int j = i; j < states_; ++j) csv.number(record.P(i, j));
     const bool has = record.innovation && record.innovation->nu.size() == measurements_;
-    for (int i = 0; i < measurements_; ++i) csv.number(has ? record.innovation->z[i] : kMissing);
+    const bool has_z = has && record.innovation->z.size() == measurements_;
+    for (int i = 0; i < measurements_; ++i) csv.number(has_z ? record.innovation->z[i] : kMissing);
     for (int i = 0; i < measurements_; ++i) csv.number(has ? record.innovation->nu[i] : kMissing);
     for (int i = 0; i < measurements_; ++i)
       for (int j = i; j < measurements_; ++j) csv.number(has ? record.innovation->S(i, j) : kMissing);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <sstream>
 
+#include "tests/support/array_recording.hpp"
 #include "tests/support/error_message.hpp"
 #include "tests/support/statistics.hpp"
 #include "truebearing/core/angle.hpp"
@@ -127,6 +128,22 @@ TEST(RecordedScenario, RangeAndBearingAreTakenFromTheSite) {
   EXPECT_NEAR(testing::moments(bearing).mean, 0.0, testing::mean_margin(0.1, bearing.size()));
   EXPECT_TRUE(variance_fits(testing::moments(range).variance, 25.0, range.size()));
   EXPECT_TRUE(variance_fits(testing::moments(bearing).variance, 0.01, bearing.size()));
+}
+
+TEST(RecordedScenario, SnapshotsAreReplayedWithTheTruthOfAllTargets) {
+  const Recording recorded = testing::array_recording();
+  const RecordedScenario scenario(recorded);
+  EXPECT_EQ(&scenario.truth_space(), &angle_space());
+  for (const std::uint64_t run : {0u, 5u}) {
+    const Recording recording = scenario.simulate({1, Role::evaluation, run});
+    EXPECT_EQ(recording.snapshots, recorded.snapshots);
+    EXPECT_EQ(recording.measurements[1].snapshots->values.data(), recorded.measurements[1].snapshots->values.data());
+    EXPECT_EQ(recording.truth.size(), 2u);
+    EXPECT_EQ(recording.counts.missing, 1);
+  }
+  Recording without = recorded;
+  without.truth_space = nullptr;
+  EXPECT_THAT(error_message([&] { RecordedScenario{without}; }), HasSubstr("no truth"));
 }
 
 TEST(RecordedScenario, PositionsMustBeThoseOfThePlane) {

@@ -5,10 +5,12 @@
 
 #include <fmt/format.h>
 
+#include "tests/support/array_recording.hpp"
 #include "tests/support/error_message.hpp"
 #include "tests/support/flight_study.hpp"
 #include "tests/support/radar_study.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "truebearing/measurement/snapshot_log.hpp"
 #include "truebearing/study/study.hpp"
 
 namespace truebearing {
@@ -61,6 +63,40 @@ TEST_F(RecordedFileTest, SigmaIsReportedWhereTheSimulatedSensorReportsIt) {
                                     "sensor = { reported = true, position_sigma_m = 70.0"));
   const auto recorded = study.recorded_scenario(folder_.path() / "one.csv");
   EXPECT_EQ(recorded->simulate({}).measurements[0].sigma, Eigen::Vector2d(50, 50));
+}
+
+/// A study's scenario of a line array, and what it hears.
+class ArrayScenario final : public Scenario {
+ public:
+  Recording simulate(const RunKey&) const override { return testing::array_recording(); }
+  const StateSpace& truth_space() const override { return angle_space(); }
+};
+
+TEST_F(RecordedFileTest, SnapshotLogIsReplayedWithItsTargets) {
+  const std::filesystem::path path = folder_.path() / "log.h5";
+  const ArrayScenario trained_on;
+  Recording recorded = testing::array_recording();
+  write_snapshot_log(path, recorded);
+  const RecordedFile file(path, std::nullopt, trained_on, "study.toml");
+  EXPECT_EQ(&file.truth_space(), &angle_space());
+  EXPECT_EQ(file.simulate({1, Role::evaluation, 3}).truth.size(), 2u);
+  EXPECT_EQ(file.simulate({}).snapshots, file.simulate({1, Role::evaluation, 3}).snapshots);
+  EXPECT_THAT(file.note(), AllOf(HasSubstr("log.h5: targets: 2; 4 intervals, 1 missing"), HasSubstr("replays")));
+
+  recorded.truth_space = nullptr;
+  recorded.truth.clear();
+  write_snapshot_log(path, recorded);
+  const RecordedFile without(path, std::nullopt, trained_on, "study.toml");
+  EXPECT_THAT(error_message([&] { without.note(); }), AllOf(HasSubstr("log.h5"), HasSubstr("truth_angle_deg")));
+}
+
+TEST_F(RecordedFileTest, SnapshotLogIsNoneOfAStudyThatMeasuresPositions) {
+  folder_.write("one.csv", flight(25, 45));
+  write_snapshot_log(folder_.path() / "log.h5", testing::array_recording());
+  const Study study = load(kPlaneStudy);
+  const auto recorded = study.recorded_scenario(folder_.path() / "log.h5");
+  EXPECT_THAT(error_message([&] { recorded->note(); }),
+              AllOf(HasSubstr("log.h5"), HasSubstr("measures snapshots"), HasSubstr("east_m, north_m")));
 }
 
 TEST_F(RecordedFileTest, AbsentFileIsNamedWhenItIsNeeded) {

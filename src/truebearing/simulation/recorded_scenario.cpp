@@ -16,6 +16,11 @@ std::vector<std::string> RecordedSensor::measured() const {
 }
 
 RecordedScenario::RecordedScenario(Recording recorded, std::optional<double> sigma) {
+  if (measures_snapshots(recorded.measured)) {
+    if (!recorded.truth_space) throw InputError("recording", "has no truth to score against", "a log with truth");
+    tracks_.push_back({std::move(recorded), {}});
+    return;
+  }
   if (!recorded.truth_space || recorded.truth.size() != 1)
     throw InputError("recording", "has no truth to measure", "a log with truth_ columns");
   std::vector<Eigen::Index> components;  // of the truth, by component of z
@@ -82,7 +87,7 @@ Recording RecordedScenario::simulate(const RunKey& key) const {
       measurement.z(i) += track.sigma[k](i) * noise;
       if (i == bearing_) measurement.z(i) = wrap_pi(measurement.z(i));
     }
-    recording.counts.missing += measurement.is_missing();
+    recording.counts.missing += is_unusable(recording, measurement);
   }
   return recording;
 }

@@ -1,5 +1,6 @@
 // Recorded tracks as a scenario: the truth is the recording's own, and every run measures it afresh with Gaussian
-// noise. What the recording did not measure stays missing. Of several tracks, run k measures number k mod count.
+// noise. What the recording did not measure stays missing. Of several tracks, run k measures number k mod count. The
+// snapshots of a line array cannot be measured afresh: every run replays them.
 #pragma once
 
 #include <Eigen/Core>
@@ -28,9 +29,9 @@ struct RecordedSensor {
 
 class RecordedScenario final : public Scenario {
  public:
-  /// A log, measured with its own sigma. `sigma`, in the unit of the measured columns, stands in where the recording
-  /// carries none. Throws InputError where the recording has no truth, a measured column is no component of it, or a
-  /// sigma is missing.
+  /// A log, measured with its own sigma; or a snapshot log, of any number of targets. `sigma`, in the unit of the
+  /// measured columns, stands in where the recording carries none. Throws InputError where the recording has no truth,
+  /// a measured column is no component of it, or a sigma is missing.
   explicit RecordedScenario(Recording recorded, std::optional<double> sigma = std::nullopt);
 
   /// Recorded positions (measured east_m, north_m, truth in plane_space()), taken as exact and measured by the sensor,

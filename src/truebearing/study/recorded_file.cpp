@@ -7,6 +7,7 @@
 #include "truebearing/core/angle.hpp"
 #include "truebearing/core/error.hpp"
 #include "truebearing/measurement/recording_csv.hpp"
+#include "truebearing/measurement/snapshot_log.hpp"
 
 namespace truebearing {
 namespace {
@@ -71,6 +72,17 @@ const Scenario& RecordedFile::opened() const {
 }
 
 void RecordedFile::open() const {
+  if (is_snapshot_log(file_)) {
+    Recording recording = read_snapshot_log(file_);
+    check_measured(recording.measured, trained_on_, file_.string());
+    if (!recording.truth_space)
+      throw InputError(file_.string(), "has no truth to score against", "a dataset truth_angle_deg");
+    note_ = fmt::format("{}: targets: {}; {} intervals, {} missing, {} repeated ones dropped; every run replays them",
+                        file_.string(), recording.truth.size(), recording.measurements.size(), recording.counts.missing,
+                        recording.counts.repeated);
+    scenario_ = std::make_unique<RecordedScenario>(std::move(recording));
+    return;
+  }
   if (!is_geographic_track(file_)) {
     scenario_ = std::make_unique<RecordedScenario>(read_recording(file_));
     return;

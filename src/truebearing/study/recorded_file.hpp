@@ -1,5 +1,6 @@
-// A recorded track that a study is compared on: a measurement log with truth, or positions on the globe
-// (measurement/geographic_track.hpp), which every run measures afresh as the study's table [recorded] says:
+// A recorded track that a study is compared on: a measurement log with truth, a line array's snapshot log with truth,
+// which every run replays, or positions on the globe (measurement/geographic_track.hpp), which every run measures
+// afresh as the study's table [recorded] says:
 //   position_sigma_m                             of a sensor that measures the position per axis; or
 //   range_sigma_m, bearing_sigma_deg, site       of one that stands `site` = [East, North] m from the track's middle
 //   max_speed_mps, min_speed_mps, max_gap_periods  what of the track is believed and scored; optional

@@ -78,8 +78,10 @@ void add_compare(CLI::App& app) {
   command->add_option("--runs", options->runs, "runs; the study's own number where not given")
       ->check(CLI::Range(1, 10000000));
   command->add_option("--threads", options->threads, "0: one per core")->check(CLI::Range(0, 1024));
-  command->add_option("--truth", options->truth,
-                      "a recorded track (log with truth, or positions), measured afresh in every run");
+  command->add_option(
+      "--truth", options->truth,
+      "a recorded track (log with truth, or positions), measured afresh in every run; or a line array's "
+      "log with truth, replayed");
   command->add_flag("--retrain", options->retrain, "tune and train afresh with this seed; files are left alone");
   command->add_option("--json", options->json, "write the results as JSON; - is standard output");
   command->add_flag("--quiet", options->quiet, "no progress");

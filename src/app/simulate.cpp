@@ -10,6 +10,7 @@
 #include "truebearing/core/error.hpp"
 #include "truebearing/io/file.hpp"
 #include "truebearing/measurement/recording_csv.hpp"
+#include "truebearing/measurement/snapshot_log.hpp"
 #include "truebearing/simulation/bearings_of_track.hpp"
 
 namespace truebearing {
@@ -37,6 +38,14 @@ std::unique_ptr<Scenario> scenario_of(const Options& options) {
                                            bearings->parameters());
 }
 
+// As a measurement log, or a snapshot log of a line array.
+void write_log(std::filesystem::path path, const Recording& recording) {
+  if (measures_snapshots(recording.measured))
+    write_snapshot_log(path.replace_extension(".h5"), recording);
+  else
+    write_file_atomically(path, write_recording(recording));
+}
+
 void simulate(const Options& options) {
   const std::unique_ptr<Scenario> scenario = scenario_of(options);
   std::error_code failure;
@@ -45,8 +54,7 @@ void simulate(const Options& options) {
   ProgressLine progress("simulate", options.quiet);
   for (std::size_t run = 0; run < options.runs; ++run) {
     const Recording recording = scenario->simulate({options.seed, Role::evaluation, run});
-    write_file_atomically(std::filesystem::path(options.folder) / fmt::format("run_{:04}.csv", run),
-                          write_recording(recording));
+    write_log(std::filesystem::path(options.folder) / fmt::format("run_{:04}.csv", run), recording);
     progress.show(run + 1, options.runs);
   }
 }
@@ -57,7 +65,9 @@ void add_simulate(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("simulate", "write measurement logs with truth");
   command->add_option("scenario", options->scenario, "scenario file (TOML)")->required();
-  command->add_option("-o,--output", options->folder, "folder for run_0000.csv, run_0001.csv, ...")->required();
+  command
+      ->add_option("-o,--output", options->folder, "folder for run_0000.csv, run_0001.csv, ... (.h5 of a line array)")
+      ->required();
   command->add_option("--seed", options->seed, "seed of the random streams")->capture_default_str();
   command->add_option("--runs", options->runs, "number of logs")->capture_default_str()->check(CLI::Range(1, 1000000));
   CLI::Option* track = command->add_option(

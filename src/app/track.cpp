@@ -1,4 +1,4 @@
-// truebearing track STUDY.toml LOG.csv: the study's trackers on a recorded log. With truth in the log, their errors;
+// truebearing track STUDY.toml LOG: the study's trackers on a recorded log. With truth in the log, their errors;
 // without, what can still be said: NIS and its consistency, whiteness, rejected and missing measurements. And what the
 // trackers noticed beside their estimates.
 #include <algorithm>
@@ -18,6 +18,7 @@
 #include "truebearing/io/csv.hpp"
 #include "truebearing/measurement/geographic_track.hpp"
 #include "truebearing/measurement/recording_csv.hpp"
+#include "truebearing/measurement/snapshot_log.hpp"
 #include "truebearing/study/study.hpp"
 #include "truebearing/study/recorded_file.hpp"
 #include "truebearing/tracker/step_log.hpp"
@@ -34,14 +35,15 @@ struct Options {
   std::string events;
 };
 
-// The tracks of a log: one, or as many as a step log has.
+// One recording, or one for each track of a step log. Of several targets of a line array there is one recording.
 std::vector<RecordedTrack> read_log(const Study& study, const std::string& log) {
   if (const auto* logs = dynamic_cast<const StepLogScenario*>(&study.scenario())) return logs->read(log);
-  if (is_geographic_track(log))
+  const bool snapshots = is_snapshot_log(log);
+  if (!snapshots && is_geographic_track(log))
     throw InputError(
         log, "holds recorded positions, which are no measurements",
         fmt::format("`truebearing compare {} --truth {}`, which measures them", study.path().string(), log));
-  Recording recording = read_recording(log);
+  Recording recording = snapshots ? read_snapshot_log(log) : read_recording(log);
   check_measured(recording.measured, study.scenario(), log);
   return {{0, std::move(recording)}};
 }
@@ -167,9 +169,9 @@ void track(const Options& options) {
       trackers.step(measurement);
       for (int i = 0; i < trackers.size(); ++i)
         for (StepRecord record : trackers.records(i)) {
+          record.track += number;  // those of a step log are numbered 0 while they run
           if (!record.correction)
             consistency[static_cast<std::size_t>(i)].add(record);  // a correction has no innovations
-          record.track += number;                                  // those of a step log are numbered 0 while they run
           writer.add(trackers.name(i), record);
         }
     }
@@ -199,7 +201,7 @@ void track(const Options& options) {
     if (!to_stdout) fmt::print("\n{}", comparison_table(comparison));
     if (!options.json.empty()) write_output(options.json, comparison_json(comparison));
   } else if (!options.json.empty()) {
-    throw InputError(options.log, "has no truth to score against", "columns truth_<component>, or no --json");
+    throw InputError(options.log, "has no truth to score against", "a log with truth, or no --json");
   }
   if (!options.output.empty()) write_output(options.output, writer.str());
   if (!options.events.empty()) write_output(options.events, events.csv());
@@ -212,8 +214,10 @@ void add_track(CLI::App& app) {
   CLI::App* command = app.add_subcommand("track", "run the study's trackers on a recorded log");
   command->add_option("study", options->study, "study file (TOML)")->required();
   command
-      ->add_option("log", options->log,
-                   "measurement log (CSV), or step log where the study's scenario is of those; - is standard input")
+      ->add_option(
+          "log", options->log,
+          "measurement log (CSV, or HDF5 of a line array), or step log where the study's scenario is of those; "
+          "- is standard input")
       ->required();
   command->add_option("-o,--output", options->output, "write the trackers' step records as CSV; - is standard output");
   command->add_option("--json", options->json,

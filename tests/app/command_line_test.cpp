@@ -6,8 +6,10 @@
 #include <sstream>
 
 #include "tests/app/program.hpp"
+#include "tests/support/array_recording.hpp"
 #include "tests/support/flight_study.hpp"
 #include "truebearing/measurement/recording_csv.hpp"
+#include "truebearing/measurement/snapshot_log.hpp"
 #include "truebearing/tracker/step_log.hpp"
 
 namespace truebearing {
@@ -287,6 +289,26 @@ TEST(Program, ComparesOnRecordedPositions) {
     EXPECT_EQ(outcome.status, 1) << arguments;
     EXPECT_THAT(outcome.err, HasSubstr(says)) << arguments;
     EXPECT_TRUE(is_one_line(outcome.err)) << arguments << "\n" << outcome.err;
+  }
+}
+
+TEST(Program, SnapshotLogOfAnotherSensorIsRefused) {
+  const TemporaryFolder folder;
+  write_study(folder, plain_study());
+  write_snapshot_log(folder.path() / "log.h5", testing::array_recording());
+  write_snapshot_log(folder.path() / "unnamed", testing::array_recording());
+  folder.write("text.h5", "time_s,position_m\n1,100\n");
+  for (const auto& [arguments, says] : std::vector<std::pair<std::string, std::string>>{
+           {"track small.toml log.h5 -o steps.csv", "log.h5: measures snapshots"},
+           {"track small.toml unnamed -o steps.csv", "unnamed: measures snapshots"},
+           {"track small.toml text.h5 -o steps.csv", "text.h5: is no HDF5 file"},
+           {"compare small.toml --truth log.h5 --json steps.csv", "log.h5: measures snapshots"},
+           {"compare small.toml --truth none.h5 --json steps.csv", "none.h5: cannot be opened"}}) {
+    const Outcome outcome = run(folder, arguments);
+    EXPECT_EQ(outcome.status, 1) << arguments;
+    EXPECT_THAT(outcome.err, HasSubstr(says)) << arguments;
+    EXPECT_TRUE(is_one_line(outcome.err)) << arguments << "\n" << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "steps.csv")) << arguments;
   }
 }
 

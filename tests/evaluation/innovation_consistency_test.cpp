@@ -47,20 +47,6 @@ TEST(InnovationConsistency, TrackerThatBelievesTooMuchNoiseIsCaught) {
   EXPECT_LT(c.nis_ratio(), c.nis_ratio_low());
 }
 
-TEST(InnovationConsistency, CorrelationIsThatOfEachTrackByItself) {
-  InnovationConsistency both;
-  for (int k = 0; k < 50; ++k)
-    for (const int track : {0, 1}) {
-      StepRecord record;
-      record.track = track;
-      const double nu = track == 0 ? 1.0 : -1.0;  // each the same step after step, of opposite signs at one step
-      record.innovation =
-          Innovation{BoundedVector::Zero(1), BoundedVector::Constant(1, nu), BoundedMatrix::Identity(1, 1), 1.0};
-      both.add(record);
-    }
-  EXPECT_DOUBLE_EQ(both.correlation(), 98.0 / 100.0);
-}
-
 TEST(InnovationConsistency, TrackerThatDoesNotFollowIsNotWhite) {
   const InnovationConsistency c = consistency({}, 1.0, 1.0, 2000, 1e4);
   EXPECT_GT(c.correlation(), c.correlation_limit());

@@ -6,6 +6,7 @@
 
 #include "truebearing/core/error.hpp"
 #include "truebearing/core/suggestion.hpp"
+#include "truebearing/study/angle_trackers.hpp"
 #include "truebearing/study/batch_trackers.hpp"
 #include "truebearing/study/bearing_trackers.hpp"
 #include "truebearing/study/filter_trackers.hpp"
@@ -18,6 +19,8 @@ struct Registry {
   std::mutex mutex;
   std::map<std::string, TrackerMaker> makers{
       {"bearings_batch", make_bearings_batch},
+      {"joint_angles", make_joint_angles},
+      {"subspace_angles", make_subspace_angles},
       {"kalman", make_kalman_tracker},
       {"kalman_bank", make_kalman_bank},
       {"unscented", make_unscented_tracker},

@@ -13,7 +13,7 @@ void OrthogonalIteration::begin(const Eigen::MatrixXcd& basis) {
 void OrthogonalIteration::update(const Interval& interval) {
   next_.re.setZero();
   next_.im.setZero();
-  for (const int t : interval.snapshots())
+  for (int t = 0; t < interval.snapshots(); ++t)
     for (Eigen::Index n = 0; n < W_.cols(); ++n) {  // x (x^H w)
       std::complex<double> product = 0.0;
       for (int m = 0; m < interval.sensors(); ++m)

@@ -5,26 +5,25 @@
 namespace truebearing {
 namespace {
 
-constexpr int kLanes = 4;
-
-struct Step {
+struct Past {
   int rows, columns;  // of W, rows padded
   double beta;
-  const double *x_re, *x_im;
+  int snapshots;
+  const double *x_re, *x_im;  // (rows x snapshots)
   double *e_re, *e_im;
   double *W_re, *W_im, *P_re, *P_im;
   double *y_re, *y_im, *h_re, *h_im;
 };
 
-[[gnu::always_inline]] inline void past_loops(const Step& s) {
+[[gnu::always_inline]] inline void step(const Past& s, const double* x_re, const double* x_im) {
   const int M = s.rows, N = s.columns;
   for (int n = 0; n < N; ++n) {  // y = W^H x
     const double *re = s.W_re + n * M, *im = s.W_im + n * M;
     double y_re = 0.0, y_im = 0.0;
 #pragma omp simd reduction(+ : y_re, y_im)
     for (int m = 0; m < M; ++m) {
-      y_re += re[m] * s.x_re[m] + im[m] * s.x_im[m];
-      y_im += re[m] * s.x_im[m] - im[m] * s.x_re[m];
+      y_re += re[m] * x_re[m] + im[m] * x_im[m];
+      y_im += re[m] * x_im[m] - im[m] * x_re[m];
     }
     s.y_re[n] = y_re;
     s.y_im[n] = y_im;
@@ -44,8 +43,8 @@ struct Step {
   double *e_re = s.e_re, *e_im = s.e_im;  // e = x - W y
 #pragma omp simd
   for (int m = 0; m < M; ++m) {
-    e_re[m] = s.x_re[m];
-    e_im[m] = s.x_im[m];
+    e_re[m] = x_re[m];
+    e_im[m] = x_im[m];
   }
   for (int n = 0; n < N; ++n) {
     const double *re = s.W_re + n * M, *im = s.W_im + n * M;
@@ -77,41 +76,29 @@ struct Step {
     im[j] = 0.0;
   }
 }
-TRUEBEARING_FOR_AVX2(past, (const Step& s), (s))
+[[gnu::always_inline]] inline void past_loops(const Past& s) {
+  for (int t = 0; t < s.snapshots; ++t) step(s, s.x_re + t * s.rows, s.x_im + t * s.rows);
+}
+TRUEBEARING_FOR_AVX2(past, (const Past& s), (s))
 
 }  // namespace
 
 void ProjectionApproximation::begin(const Eigen::MatrixXcd& basis) {
-  sensors_ = static_cast<int>(basis.rows());
-  const Eigen::Index padded = (basis.rows() + kLanes - 1) / kLanes * kLanes, N = basis.cols();
+  const Eigen::Index M = basis.rows(), padded = Interval::padded(static_cast<int>(M)), N = basis.cols();
   W_.setZero(padded, N);
-  W_.re.topRows(sensors_) = basis.real();
-  W_.im.topRows(sensors_) = basis.imag();
+  W_.re.topRows(M) = basis.real();
+  W_.im.topRows(M) = basis.imag();
   P_.re.setIdentity(N, N);
   P_.im.setZero(N, N);
-  x_re_.setZero(padded);
-  x_im_.setZero(padded);
   e_.setZero(2 * padded);
   work_.setZero(4 * N);
 }
 
 void ProjectionApproximation::update(const Interval& interval) {
-  for (const int t : interval.snapshots()) {
-    for (int m = 0; m < sensors_; ++m) {
-      const std::complex<double> value = interval.value(t, m);
-      x_re_[m] = value.real();
-      x_im_[m] = value.imag();
-    }
-    step();
-  }
-}
-
-void ProjectionApproximation::step() {
-  const Eigen::Index N = W_.cols();
-  double* work = work_.data();
-  past({static_cast<int>(W_.rows()), static_cast<int>(N), beta_, x_re_.data(), x_im_.data(), e_.data(),
-        e_.data() + W_.rows(), W_.re.data(), W_.im.data(), P_.re.data(), P_.im.data(), work, work + N, work + 2 * N,
-        work + 3 * N});
+  const Eigen::Index M = W_.rows(), N = W_.cols();
+  past({static_cast<int>(M), static_cast<int>(N), beta_, interval.snapshots(), interval.re(0), interval.im(0),
+        e_.data(), e_.data() + M, W_.re.data(), W_.im.data(), P_.re.data(), P_.im.data(), work_.data(),
+        work_.data() + N, work_.data() + 2 * N, work_.data() + 3 * N});
 }
 
 }  // namespace truebearing

@@ -25,15 +25,11 @@ class ProjectionApproximation {
   const SplitMatrix<double>& basis() const { return W_; }
 
  private:
-  void step();
-
   double beta_;
-  int sensors_ = 0;
   SplitMatrix<double> W_;
-  SplitMatrix<double> P_;        // (N x N), Hermitian
-  Eigen::VectorXd x_re_, x_im_;  // the snapshot (M, padded)
-  Eigen::VectorXd e_;            // x - W y, real and imaginary part
-  Eigen::VectorXd work_;         // y and h, the same
+  SplitMatrix<double> P_;  // (N x N), Hermitian
+  Eigen::VectorXd e_;      // x - W y, real and imaginary part
+  Eigen::VectorXd work_;   // y and h, the same
 };
 
 }  // namespace truebearing

@@ -8,7 +8,7 @@
 namespace truebearing {
 namespace {
 
-constexpr int kLanes = 4;
+constexpr int kLanes = Interval::kLanes;
 
 // The lower triangle, in whole columns from the diagonal's group of lanes on, of X X^T.
 [[gnu::always_inline]] inline void outer_loops(int rows, int columns, const double* X, double scale, double* R) {
@@ -35,7 +35,7 @@ void RealInterval::take(const Interval& interval, int blocks) {
   const int M = interval.sensors();
   array_.pairs = M / 2;
   array_.middle = M % 2 == 1;
-  array_.padded = (M + kLanes - 1) / kLanes * kLanes;
+  array_.padded = Interval::padded(M);
   array_.spacing_wavelengths = interval.spacing_wavelengths();
   array_.live.setZero(array_.padded);
   const std::vector<double>& live = interval.live();
@@ -48,50 +48,47 @@ void RealInterval::take(const Interval& interval, int blocks) {
   array_.live_rows = static_cast<int>(array_.live.sum());
 
   const int Ns = interval.block_snapshots();
-  rows_.setZero(array_.padded, 2 * Ns);
+  if (rows_.rows() != array_.padded || rows_.cols() < 2 * Ns) rows_.setZero(array_.padded, 2 * Ns);
   if (static_cast<int>(blocks_.size()) < blocks) blocks_.resize(static_cast<std::size_t>(blocks));
   count_ = 0;
   snapshots_ = 0.0;
-  int column = 0, begin = 0;
+  int begin = 0;
   double time_sum_s = 0.0;
-  const auto close_block = [&] {
-    const int columns = column - begin;
-    if (columns == 0) return;
+  const auto close_block = [&](int end) {
+    if (end == begin) return;
     RealCovariance& block = blocks_[static_cast<std::size_t>(count_++)];
     block.R.resize(array_.padded, array_.padded);
-    block.snapshots = columns / 2;
+    block.snapshots = end - begin;
     snapshots_ += block.snapshots;
-    outer(array_.padded, columns, rows_.data() + begin * array_.padded, 1.0 / block.snapshots, block.R.data());
+    outer(array_.padded, 2 * (end - begin), rows_.col(2 * begin).data(), 1.0 / block.snapshots, block.R.data());
     block.trace = block.R.trace();
     block.time_s = time_sum_s / block.snapshots;
-    begin = column;
+    begin = end;
     time_sum_s = 0.0;
   };
   constexpr double kHalf = 1.0 / std::numbers::sqrt2;
+  const int above = M - array_.pairs, below = array_.pairs - 1;  // of pair 0
   int of_block = 0;
-  for (const int t : interval.snapshots()) {
-    const int belongs = t * blocks / Ns;
-    if (belongs != of_block) close_block();
+  for (int t = 0; t < interval.snapshots(); ++t) {
+    const int belongs = interval.number(t) * blocks / Ns;
+    if (belongs != of_block) close_block(t);
     of_block = belongs;
+    const double *re = interval.re(t), *im = interval.im(t);
+    double *real = rows_.col(2 * t).data(), *imaginary = rows_.col(2 * t + 1).data();
     for (int i = 0; i < array_.pairs; ++i) {
       const double alive = array_.live[i] * kHalf;
-      const std::complex<double> above = interval.value(t, static_cast<int>(sensor(i, 1)));
-      const std::complex<double> below = interval.value(t, static_cast<int>(sensor(i, -1)));
-      const std::complex<double> sum = alive * (above + below), difference = alive * (above - below);
-      rows_(i, column) = sum.real();
-      rows_(i, column + 1) = sum.imag();
-      rows_(array_.pairs + i, column) = difference.imag();  // over j
-      rows_(array_.pairs + i, column + 1) = -difference.real();
+      real[i] = alive * (re[above + i] + re[below - i]);
+      imaginary[i] = alive * (im[above + i] + im[below - i]);
+      real[array_.pairs + i] = alive * (im[above + i] - im[below - i]);  // the difference over j
+      imaginary[array_.pairs + i] = -alive * (re[above + i] - re[below - i]);
     }
     if (array_.middle) {
-      const std::complex<double> value = interval.value(t, array_.pairs);
-      rows_(2 * array_.pairs, column) = value.real();
-      rows_(2 * array_.pairs, column + 1) = value.imag();
+      real[2 * array_.pairs] = re[array_.pairs];
+      imaginary[2 * array_.pairs] = im[array_.pairs];
     }
-    column += 2;
-    time_sum_s -= (Ns - 1 - t) * interval.interval_s() / Ns;
+    time_sum_s -= (Ns - 1 - interval.number(t)) * interval.interval_s() / Ns;
   }
-  close_block();
+  close_block(interval.snapshots());
 }
 
 }  // namespace truebearing

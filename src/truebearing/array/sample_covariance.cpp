@@ -8,12 +8,12 @@ namespace truebearing {
 void sample_covariance(const Interval& interval, Eigen::MatrixXcd& R) {
   const int M = interval.sensors();
   R.setZero(M, M);
-  for (const int t : interval.snapshots())
+  for (int t = 0; t < interval.snapshots(); ++t)
     for (int j = 0; j < M; ++j) {
       const std::complex<double> x_j = std::conj(interval.value(t, j));
       for (int i = 0; i < M; ++i) R(i, j) += interval.value(t, i) * x_j;
     }
-  R /= std::max<double>(1.0, static_cast<double>(interval.snapshots().size()));
+  R /= std::max<double>(1.0, interval.snapshots());
 }
 
 SignalSubspace signal_subspace(const Eigen::MatrixXcd& R, int N) {

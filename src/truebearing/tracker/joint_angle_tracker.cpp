@@ -110,8 +110,7 @@ bool JointAngleTracker::begin(double time_s) {
   if (const int* given = std::get_if<int>(&options_.targets))
     N = *given;
   else
-    N = source_count(whole.eigenvalues, static_cast<int>(interval_.snapshots().size()),
-                     std::get<OrderCriterion>(options_.targets));
+    N = source_count(whole.eigenvalues, interval_.snapshots(), std::get<OrderCriterion>(options_.targets));
   N = std::min({N, kMaxSignals, interval_.live_sensors() - 1});
   noise_power_ = options_.noise_power.value_or(std::max(
       whole.eigenvalues.segment(interval_.sensors() - interval_.live_sensors(), interval_.live_sensors() - N).mean(),

@@ -14,12 +14,7 @@ inline StreamGuard::Verdict examine_snapshots(StreamGuard& guard, const Measurem
   if (measurement.snapshots) {
     interval.take(*measurement.snapshots);
     usable = interval.is_usable();
-    sums.z = BoundedVector::Zero(3);
-    for (const std::complex<double> value : measurement.snapshots->values) {
-      sums.z[0] += value.real();
-      sums.z[1] += value.imag();
-      sums.z[2] += std::norm(value);
-    }
+    sums.z = interval.sums();
   }
   return guard.examine(sums, usable);
 }

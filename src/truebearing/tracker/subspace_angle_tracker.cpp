@@ -56,8 +56,7 @@ bool SubspaceAngleTracker::begin(double time_s) {
   else if (const int* given = std::get_if<int>(&options_.targets))
     N = *given;
   else
-    N = source_count(whole.eigenvalues, static_cast<int>(interval_.snapshots().size()),
-                     std::get<OrderCriterion>(options_.targets));
+    N = source_count(whole.eigenvalues, interval_.snapshots(), std::get<OrderCriterion>(options_.targets));
   N = std::min(N, interval_.live_sensors() - 1);
   if (N < 1) return false;
   const Eigen::MatrixXcd E = whole.basis.leftCols(N);
@@ -115,12 +114,12 @@ void SubspaceAngleTracker::follow_subspace() {
   // Rayleigh quotients of the basis, and the mean of what they leave.
   const SplitMatrix<double>& W = basis();
   double total = 0.0, signals = 0.0, least = std::numeric_limits<double>::infinity();
-  const double Ns = static_cast<double>(interval_.snapshots().size());
-  for (const int t : interval_.snapshots())
+  const double Ns = interval_.snapshots();
+  for (int t = 0; t < interval_.snapshots(); ++t)
     for (int m = 0; m < M; ++m) total += std::norm(interval_.value(t, m)) / Ns;
   for (Eigen::Index n = 0; n < N; ++n) {
     double power = 0.0;
-    for (const int t : interval_.snapshots()) {
+    for (int t = 0; t < interval_.snapshots(); ++t) {
       std::complex<double> product = 0.0;
       for (int m = 0; m < M; ++m) product += std::complex<double>(W.re(m, n), -W.im(m, n)) * interval_.value(t, m);
       power += std::norm(product) / Ns;
@@ -161,7 +160,7 @@ double SubspaceAngleTracker::variance(std::size_t n, double curvature) const {
   if (options_.sigma_from_subspace) {
     // Of MUSIC's angles (Stoica and Nehorai 1989), every signal taken to be as weak as the weakest.
     const double snr = least_power_ / noise_power_ / interval_.live_sensors();
-    const double Ns = static_cast<double>(interval_.snapshots().size());
+    const double Ns = interval_.snapshots();
     variance += (1.0 + 1.0 / (snr * interval_.live_sensors())) / (2.0 * Ns * snr * curvature);
   }
   double nearest = std::numeric_limits<double>::infinity();

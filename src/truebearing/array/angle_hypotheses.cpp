@@ -30,9 +30,7 @@ bool AngleHypotheses::score(const AngleHypothesis& parent, const JointAngleState
   if (!update_.run(prior, interval, middle_s, start, options_.update, child.state)) return false;
   child.prior = prior;
   child.log_weight = parent.log_weight + update_.log_evidence();
-  const int N = prior.targets();
-  for (int n = 0; n < N; ++n)
-    child.state.q[n] = options_.motion.q_after(equivalent_innovation(prior, child.state, n).nis());
+  adapt(options_.motion, prior, child.state);
   return std::isfinite(child.log_weight);
 }
 

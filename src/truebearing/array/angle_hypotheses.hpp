@@ -26,7 +26,7 @@ class AngleHypotheses {
     /// A pair is scored the other way round where it is predicted closer than this, or than close_sigmas of the
     /// difference, and in any case closer than reach_rad.
     double close_rad = 0.0349, close_sigmas = 3.0, reach_rad = 0.1396;
-    double new_rad = 0.0026;                                           ///< a child that differs by less is none
+    double new_rad = 0.00087;                                          ///< a child that differs by less is none
     double drop_log_weight = 12.0;                                     ///< so far below the best is dropped
     double same_rad = 0.0026, same_radps = 0.0014, same_sigmas = 0.7;  ///< closer in all three is one
   };

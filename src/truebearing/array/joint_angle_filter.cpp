@@ -54,9 +54,21 @@ constexpr double kConverged = 1e-4;  // squared step, in standard deviations of 
 
 }  // namespace
 
-double JointAngleMotion::q_after(double nis) const {
-  const double bounded = std::max(nis, 0.3);
-  return std::clamp(q0 * bounded * bounded * bounded, q_low, q_high);
+void adapt(const JointAngleMotion& motion, const JointAngleState& prior, JointAngleState& posterior) {
+  constexpr double kLargest = 5.0, kLeast = 0.3;
+  const int N = prior.targets();
+  for (int n = 0; n < N; ++n) {
+    const EquivalentInnovation innovation = equivalent_innovation(prior, posterior, n);
+    const double e = std::clamp(innovation.nu_rad / std::sqrt(innovation.S_rad2), -kLargest, kLargest);
+    double& mean = posterior.innovations[n];
+    mean += motion.alpha * (e - mean);
+    const double s = std::max(mean * mean * (2.0 - motion.alpha) / motion.alpha, kLeast);
+    bool close = false;
+    for (int other = 0; other < N; ++other)
+      close |= other != n && std::abs(prior.x[other] - prior.x[n]) < motion.close_rad;
+    posterior.q[n] = std::clamp(motion.q0 * s * s, close ? motion.close_q_low : motion.q_low,
+                                close ? motion.close_q_high : motion.q_high);
+  }
 }
 
 void predict(JointAngleState& state, const JointAngleMotion& motion, double dt_s) {
@@ -89,6 +101,7 @@ JointAngleState rearranged(const JointAngleState& state, int targets, const Plac
   other.x.setZero(3 * targets);
   other.P.setZero(3 * targets, 3 * targets);
   other.q.setZero(targets);
+  other.innovations.setZero(targets);
   const auto from = [&](int i) { return place(i % targets) < 0 ? -1 : i / targets * N + place(i % targets); };
   for (int i = 0; i < 3 * targets; ++i) {
     if (from(i) < 0) continue;
@@ -96,8 +109,11 @@ JointAngleState rearranged(const JointAngleState& state, int targets, const Plac
     for (int j = 0; j < 3 * targets; ++j)
       if (from(j) >= 0) other.P(i, j) = state.P(from(i), from(j));
   }
-  for (int n = 0; n < targets; ++n)
-    if (place(n) >= 0) other.q[n] = state.q[place(n)];
+  for (int n = 0; n < targets; ++n) {
+    if (place(n) < 0) continue;
+    other.q[n] = state.q[place(n)];
+    other.innovations[n] = state.innovations[place(n)];
+  }
   return other;
 }
 
@@ -206,6 +222,7 @@ bool JointAngleUpdate::run(const JointAngleState& prior, const RealInterval& int
   auto Y = U_.rightCols(N);
   solve_lower(L_, Y);
   posterior.q = prior.q;
+  posterior.innovations = prior.innovations;
   posterior.x = prior.x;
   posterior.P.setZero(3 * N, 3 * N);
   posterior.P.bottomRightCorner(N, N) = prior.P.bottomRightCorner(N, N);

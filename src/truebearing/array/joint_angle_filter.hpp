@@ -13,26 +13,33 @@
 
 namespace truebearing {
 
-/// How targets move, and how their powers do.
+/// How targets move, and how their powers do. The spectral density of the angular acceleration follows a running mean
+/// of the target's normalised innovations, a <- a + alpha (e - a): s = a^2 (2 - alpha) / alpha is about 1 while it goes
+/// on as predicted, and grows where innovations keep to one side, as they do in a manoeuvre and not in noise.
 struct JointAngleMotion {
-  /// Spectral density of the angular acceleration, rad^2/s^3: q0 at ease, and with the normalised innovation squared of
-  /// the interval before, nis, clip(q0 max(nis, .3)^3, q_low, q_high). Equal limits make it constant.
+  /// rad^2/s^3: clip(q0 max(s, .3)^2, q_low, q_high). Equal limits make it constant.
   double q0 = 0.0, q_low = 0.0, q_high = 0.0;
+  double alpha = 0.3;
+  /// Other limits while another target is predicted to be closer: what innovations say is of little worth then, and a
+  /// rate that is forgotten in a crossing is what would tell the two apart after it.
+  double close_rad = 0.0, close_q_low = 0.0, close_q_high = 0.0;
   double log_power_variance_per_s = 0.0;
-
-  double q_after(double nis) const;
 };
 
 struct JointAngleState {
   SignalVector x;
   SignalMatrix P;
-  SignalVector q;  ///< process noise of each target until the next interval (N)
+  SignalVector q;            ///< process noise of each target until the next interval (N)
+  SignalVector innovations;  ///< running means of the normalised innovations (N)
 
   int targets() const { return static_cast<int>(x.size()) / 3; }
   double angle(int n) const { return x[n]; }
   double log_power(int n) const { return x[targets() + n]; }
   double rate(int n) const { return x[2 * targets() + n]; }
 };
+
+/// Sets the process noise of `posterior` from what the interval said of `prior`.
+void adapt(const JointAngleMotion& motion, const JointAngleState& prior, JointAngleState& posterior);
 
 /// Crosses dt_s: the angles at constant rates, the powers at random.
 void predict(JointAngleState& state, const JointAngleMotion& motion, double dt_s);

@@ -25,6 +25,16 @@ JointAngleMotion read_motion(TableReader table) {
     motion.q_high = table.number("q_high_deg2ps3", kPositive) * kSquareDegree;
     if (motion.q_low > motion.q_high) throw table.error("q_low_deg2ps3", "is above q_high_deg2ps3", "less");
   }
+  motion.alpha = table.number_or("innovation_alpha", motion.alpha, {0.0, 1.0, true});
+  motion.close_q_low = motion.q_low;
+  motion.close_q_high = motion.q_high;
+  if (table.has("close_deg")) {
+    motion.close_rad = radians(table.number("close_deg", {0.0, 90.0, true}));
+    motion.close_q_low = table.number("close_q_low_deg2ps3", kPositive) * kSquareDegree;
+    motion.close_q_high = table.number("close_q_high_deg2ps3", kPositive) * kSquareDegree;
+    if (motion.close_q_low > motion.close_q_high)
+      throw table.error("close_q_low_deg2ps3", "is above close_q_high_deg2ps3", "less");
+  }
   motion.log_power_variance_per_s = table.number_or("log_power_variance_per_s", 1e-3, kNonNegative);
   table.finish();
   return motion;

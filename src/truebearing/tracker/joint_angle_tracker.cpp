@@ -144,7 +144,8 @@ std::optional<JointAngleState> JointAngleTracker::state_from(const std::vector<d
   JointAngleState prior;
   prior.x.setZero(3 * N);
   prior.P.setZero(3 * N, 3 * N);
-  prior.q.setConstant(N, options_.hypotheses.motion.q_after(1.0));
+  prior.q.setConstant(N, options_.hypotheses.motion.q0);
+  prior.innovations.setZero(N);
   const double live = interval_.live_sensors();
   for (int n = 0; n < N; ++n) {
     Eigen::VectorXcd a(M);
@@ -247,7 +248,7 @@ void JointAngleTracker::add_target(const AngleLikelihood::Newcomer& heard, doubl
   target.log_power = heard.log_power;
   target.log_power_sigma = 1.0;
   target.rate_sigma_radps = options_.rate_sigma_radps;
-  target.q = options_.hypotheses.motion.q_after(1.0);
+  target.q = options_.hypotheses.motion.q0;
   hypotheses_.change([&](AngleHypothesis& hypothesis) {
     truebearing::add_target(hypothesis.state, target);
     truebearing::add_target(hypothesis.prior, target);

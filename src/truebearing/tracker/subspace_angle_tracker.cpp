@@ -113,7 +113,7 @@ void SubspaceAngleTracker::follow_subspace() {
   if (!options_.sigma_from_subspace) return;
   // Rayleigh quotients of the basis, and the mean of what they leave.
   const SplitMatrix<double>& W = basis();
-  double total = 0.0, signals = 0.0, least = std::numeric_limits<double>::infinity();
+  double total = 0.0, signals = 0.0;
   const double Ns = interval_.snapshots();
   for (int t = 0; t < interval_.snapshots(); ++t)
     for (int m = 0; m < M; ++m) total += std::norm(interval_.value(t, m)) / Ns;
@@ -124,12 +124,10 @@ void SubspaceAngleTracker::follow_subspace() {
       for (int m = 0; m < M; ++m) product += std::complex<double>(W.re(m, n), -W.im(m, n)) * interval_.value(t, m);
       power += std::norm(product) / Ns;
     }
-    power /= W.re.col(n).squaredNorm() + W.im.col(n).squaredNorm();
-    signals += power;
-    least = std::min(least, power);
+    signals += power / (W.re.col(n).squaredNorm() + W.im.col(n).squaredNorm());
   }
   noise_power_ = std::max((total - signals) / std::max(interval_.live_sensors() - N, 1), 1e-12 * total);
-  least_power_ = std::max(least - noise_power_, 0.05 * noise_power_);
+  signal_power_ = std::max(signals / N - noise_power_, 0.05 * noise_power_);
 }
 
 void SubspaceAngleTracker::prepare_innovation() {
@@ -158,8 +156,8 @@ AngularInnovation<double> SubspaceAngleTracker::innovation(Eigen::Index n) {
 double SubspaceAngleTracker::variance(std::size_t n, double curvature) const {
   double variance = options_.sigma_rad * options_.sigma_rad;
   if (options_.sigma_from_subspace) {
-    // Of MUSIC's angles (Stoica and Nehorai 1989), every signal taken to be as weak as the weakest.
-    const double snr = least_power_ / noise_power_ / interval_.live_sensors();
+    // Of MUSIC's angles (Stoica and Nehorai 1989), every signal taken to be as strong as their mean.
+    const double snr = signal_power_ / noise_power_ / interval_.live_sensors();
     const double Ns = interval_.snapshots();
     variance += (1.0 + 1.0 / (snr * interval_.live_sensors())) / (2.0 * Ns * snr * curvature);
   }

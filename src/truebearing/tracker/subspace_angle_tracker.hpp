@@ -87,7 +87,7 @@ class SubspaceAngleTracker final : public Tracker {
   OrthogonalIteration orthogonal_;
   SplitMatrix<double> eigenvectors_;
   Eigen::MatrixXcd covariance_;
-  double least_power_ = 1.0, noise_power_ = 1.0;  // of the signals' eigenvalues, and of the others
+  double signal_power_ = 1.0, noise_power_ = 1.0;  // means along the basis and off it
   RyuInnovation<double> ryu_;
   ProjectionInnovation<double> projection_;
   ImplicitInnovation<double> implicit_;

@@ -17,6 +17,7 @@ using BoundAtTimes = std::vector<TargetMotionVariance>;  // [time]
 struct SetScores {
   std::vector<std::vector<RunScore>> runs;  // [run][tracker]
   std::vector<BoundAtTimes> bound;          // [run], or empty
+  std::vector<AngleVariances> angle_bound;  // the same
   std::vector<double> time_s;               // of the first run
   std::vector<std::string> phases;
 };
@@ -27,6 +28,7 @@ SetScores run_set(const TrackerSet& trackers, const std::vector<Scorer>& scorers
   SetScores set;
   set.runs.resize(options.runs);
   if (options.cramer_rao) set.bound.resize(options.runs);
+  if (options.angle_bound) set.angle_bound.resize(options.runs);
   std::vector<std::optional<TrackerSet>> clones(worker_count(options.threads));
   const auto run_one = [&](std::size_t run, std::size_t worker) {
     if (!clones[worker]) clones[worker].emplace(trackers.clone());
@@ -34,6 +36,8 @@ SetScores run_set(const TrackerSet& trackers, const std::vector<Scorer>& scorers
     set.runs[run] = score_recording(*clones[worker], scorers, recording, options.scoring);
     if (options.cramer_rao)
       set.bound[run] = options.cramer_rao->variances(recording, steps_at(recording, options.scoring.times_s));
+    if (options.angle_bound)
+      set.angle_bound[run] = options.angle_bound->variances(recording, options.scoring.from_step);
     if (run != 0) return;
     for (const Measurement& measurement : recording.measurements) set.time_s.push_back(measurement.time_s);
     set.phases = recording.phases;
@@ -55,10 +59,12 @@ Comparison summarise_sets(const TrackerSet& trackers, const std::vector<Scorer>&
   comparison.bounds = options.bounds;
   std::vector<std::vector<const RunScore*>> by_tracker(scorers.size());
   std::vector<const BoundAtTimes*> bounds;
+  std::vector<const AngleVariances*> angle_bounds;
   for (const SetScores& set : sets) {
     for (const std::vector<RunScore>& run : set.runs)
       for (std::size_t i = 0; i < scorers.size(); ++i) by_tracker[i].push_back(&run[i]);
     for (const BoundAtTimes& bound : set.bound) bounds.push_back(&bound);
+    for (const AngleVariances& bound : set.angle_bound) angle_bounds.push_back(&bound);
   }
   for (std::size_t i = 0; i < scorers.size(); ++i) {
     comparison.trackers.push_back(
@@ -79,6 +85,7 @@ Comparison summarise_sets(const TrackerSet& trackers, const std::vector<Scorer>&
          {event_metrics(scorers[i], by_tracker[i]), track_metrics(scorers[i], by_tracker[i], options.scoring),
           gospa_metrics(by_tracker[i], options.scoring)})
       add_metrics(comparison.trackers[i], metrics);
+  if (options.angle_bound) comparison.angle_bounds = summarise_angle_bounds(angle_bounds);
   if (options.cramer_rao) {
     comparison.cramer_rao = summarise_bound(bounds, options.scoring.times_s);
     for (TrackerSummary& summary : comparison.trackers)

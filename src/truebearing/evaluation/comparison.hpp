@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "truebearing/evaluation/angle_bound_summary.hpp"
 #include "truebearing/evaluation/bound_summary.hpp"
 #include "truebearing/evaluation/monte_carlo.hpp"
 #include "truebearing/evaluation/summary.hpp"
@@ -24,6 +25,7 @@ struct ComparisonOptions {
   std::vector<std::pair<std::string, std::string>> pairs;  ///< "a - b" for each
   std::vector<std::string> bounds;                         ///< trackers that are bounds: reported as such too
   std::optional<TargetMotionBound> cramer_rao;             ///< at the times of the scoring
+  std::optional<AngleBound> angle_bound;                   ///< of several targets at a line array
   std::string global_minimum;  ///< the batch tracker whose costs the others' are compared with; or empty
   Progress progress;
 };
@@ -44,6 +46,7 @@ struct Comparison {
   std::vector<Pair> pairs;
   std::vector<std::string> bounds;
   std::optional<BoundSummary> cramer_rao;
+  std::vector<AngleBoundSummary> angle_bounds;              ///< where the options ask for them
   std::vector<std::pair<std::string, double>> ns_per_step;  ///< by tracker; timings, the only figures that vary
   std::vector<std::pair<std::string, Comparison>> sets;     ///< where there were several: each by itself
 

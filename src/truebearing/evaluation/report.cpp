@@ -96,6 +96,18 @@ Json tracker_json(const Comparison& comparison, const TrackerSummary& summary) {
   return json;
 }
 
+Json angle_bound_json(const Comparison& comparison, const AngleBoundSummary& bound) {
+  Json entry, rmse = Json::object(), metrics = Json::array();
+  for (const AngleBoundSummary::Quantity& quantity : bound.quantities) {
+    entry[quantity.name] = number(quantity.rmse);
+    metrics.push_back(metric_json(quantity.mse));
+    rmse[quantity.name] = numbers(quantity.series);
+  }
+  entry["metrics"] = metrics;
+  entry["series"] = {{"time_s", numbers(comparison.time_s)}, {"rmse", rmse}};
+  return entry;
+}
+
 using Columns = std::vector<QuantitySummary>;
 
 // The quantities of the tracker that has most of them: a raw measurement may lack the velocity.
@@ -195,6 +207,8 @@ void add_figures(const Comparison& comparison, Json& json) {
     entry["metrics"] = Json::array();
     for (const Metric& metric : comparison.cramer_rao->metrics) entry["metrics"].push_back(metric_json(metric));
   }
+  for (const AngleBoundSummary& bound : comparison.angle_bounds)
+    json["bounds"][bound.name] = angle_bound_json(comparison, bound);
   json["paired"] = Json::object();
   for (const Comparison::Pair& pair : comparison.pairs) {
     Json& entry = json["paired"][pair.a + " - " + pair.b] = Json::object();

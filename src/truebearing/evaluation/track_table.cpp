@@ -1,6 +1,7 @@
 #include "truebearing/evaluation/track_table.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <vector>
 
@@ -36,6 +37,12 @@ std::string title(const Metric& metric) {
   return plain ? words : words + " " + metric.unit;
 }
 
+// Squares of small errors need a digit more.
+std::string figure_of(const Metric& metric, double value) {
+  const double size = std::abs(value);
+  return metric.unit.ends_with("^2") && size > 0.0 && size < 0.1 ? fmt::format("{:.4f}", value) : figure(value);
+}
+
 std::string tracker_rows(const Comparison& comparison) {
   const std::vector<Metric> columns = columns_of(comparison);
   if (columns.empty()) return {};
@@ -52,8 +59,30 @@ std::string tracker_rows(const Comparison& comparison) {
         rows.back().push_back(metric ? fmt::format("{:.0f}", metric->value) : "-");
         continue;
       }
-      rows.back().push_back(metric ? figure(metric->value) : "-");
-      rows.back().push_back(metric ? figure(metric->se) : "-");
+      rows.back().push_back(metric ? figure_of(*metric, metric->value) : "-");
+      rows.back().push_back(metric ? figure_of(*metric, metric->se) : "-");
+    }
+  }
+  return fmt::format("\n{}", aligned(rows));
+}
+
+// What those cannot fall below.
+std::string bound_rows(const Comparison& comparison) {
+  if (comparison.angle_bounds.empty()) return {};
+  std::vector<Metric> columns;
+  for (const AngleBoundSummary& bound : comparison.angle_bounds)
+    for (const AngleBoundSummary::Quantity& quantity : bound.quantities)
+      if (!find(columns, quantity.mse.name)) columns.push_back(quantity.mse);
+  Rows rows{{"bounds"}};
+  for (const Metric& column : columns) rows[0].insert(rows[0].end(), {title(column), "+-"});
+  for (const AngleBoundSummary& bound : comparison.angle_bounds) {
+    rows.push_back({bound.name});
+    std::vector<Metric> metrics;
+    for (const AngleBoundSummary::Quantity& quantity : bound.quantities) metrics.push_back(quantity.mse);
+    for (const Metric& column : columns) {
+      const Metric* metric = find(metrics, column.name);
+      rows.back().push_back(metric ? figure_of(*metric, metric->value) : "-");
+      rows.back().push_back(metric ? figure_of(*metric, metric->se) : "-");
     }
   }
   return fmt::format("\n{}", aligned(rows));
@@ -79,7 +108,7 @@ std::string pair_rows(const Comparison& comparison) {
 }  // namespace
 
 std::string track_tables(const Comparison& comparison) {
-  return tracker_rows(comparison) + pair_rows(comparison);
+  return tracker_rows(comparison) + bound_rows(comparison) + pair_rows(comparison);
 }
 
 std::string name_of(const CleanDifference& difference, const Comparison& comparison) {

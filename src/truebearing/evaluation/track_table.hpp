@@ -7,8 +7,8 @@
 
 namespace truebearing {
 
-/// A row per tracker, and a row per difference of clean runs of the pairs, each block with an empty line before it;
-/// empty where the comparison has no such figures.
+/// A row per tracker, a row per bound of the angles, and a row per difference of clean runs of the pairs, each block
+/// with an empty line before it; empty where the comparison has no such figures.
 std::string track_tables(const Comparison& comparison);
 
 /// What the results call a difference of clean runs: "angle_deg2_clean", "angle_deg2_clean_crossing".

@@ -29,6 +29,9 @@ class PosteriorInformation {
   /// Adds what is believed beforehand: a Gaussian of covariance P, positive definite.
   void add_prior(const Matrix& P) { J_ += P.llt().solve(identity()); }
 
+  /// Adds information about the state that comes from elsewhere.
+  void add(const Matrix& J) { J_ += J; }
+
   /// Adds a last component to the state, of which nothing is known yet.
   void add_parameter() requires(States == Eigen::Dynamic) {
     const Eigen::Index n = J_.rows();

@@ -7,6 +7,7 @@
 #include "truebearing/core/suggestion.hpp"
 #include "truebearing/correction/corrected_tracker.hpp"
 #include "truebearing/correction/model_file.hpp"
+#include "truebearing/simulation/line_array_scenario.hpp"
 #include "truebearing/study/configuration_text.hpp"
 #include "truebearing/study/track_scoring.hpp"
 #include "truebearing/study/tracker_registry.hpp"
@@ -134,10 +135,27 @@ void Study::read_scoring(TableReader scoring) {
     }
   timed_ = read_timed_scoring(scoring, scenario_->truth_space(), scoring_);
   read_track_scoring(scoring, scenario_->truth_space(), scoring_);
+  angle_bound_ = read_angle_bound(scoring, scenario_->truth_space());
+  if (angle_bound_) check_angle_bound(scoring);
   if (!timed_.global_minimum.empty()) known("global_minimum", timed_.global_minimum);
   if (scoring.has("bounds"))
     for (const std::string& bound : scoring.texts("bounds")) bounds_.push_back(known("bounds", bound));
   scoring.finish();
+}
+
+// Only a simulated line array tells how loud its targets are; and the bound is of those that stand still.
+void Study::check_angle_bound(TableReader& scoring) const {
+  const auto check = [&](const Scenario& scenario, const std::string& which) {
+    const auto* array = dynamic_cast<const LineArrayScenario*>(&scenario);
+    if (!array)
+      throw scoring.error("angle_bound", "needs signal-to-noise ratios, which " + which + " does not tell",
+                          "a scenario of kind \"line_array\"");
+    if (array->parameters().moving)
+      throw scoring.error("angle_bound",
+                          "is of targets that stand still inside an interval, and those of " + which + " move");
+  };
+  if (sets_.empty()) check(*scenario_, "the scenario");
+  for (const auto& [name, scenario] : sets_) check(*scenario, "the set \"" + name + "\"");
 }
 
 std::vector<NamedScenario> Study::evaluation_scenarios() const {
@@ -336,6 +354,7 @@ ComparisonOptions Study::comparison_options() const {
   options.pairs = pairs_;
   options.bounds = bounds_;
   options.cramer_rao = timed_.cramer_rao;
+  options.angle_bound = angle_bound_;
   options.global_minimum = timed_.global_minimum;
   return options;
 }

@@ -87,6 +87,7 @@ class Study {
   void read_scoring(TableReader scoring);
   void read_trackers(TableReader table, const std::vector<std::string>& order);
   void check_trackers();
+  void check_angle_bound(TableReader& scoring) const;
   void check_replay(const TrackerSpec& spec, const Tracker& tracker);
 
   std::filesystem::path path_;
@@ -99,6 +100,7 @@ class Study {
   std::size_t tuning_runs_ = 300;
   ScoringRule scoring_;
   TimedScoring timed_;
+  std::optional<AngleBound> angle_bound_;
   std::vector<std::pair<std::string, std::string>> pairs_;
   std::vector<std::string> bounds_;
   std::filesystem::path parameters_path_;

@@ -4,8 +4,14 @@
 //   gospa = { quantity = "angle_deg", cutoff = 5.0 }
 //                                         of targets that appear and vanish: tracks belong to targets by assignment, so
 //                                         that it does not go with `tracks`, which tells them by their numbers
+//   angle_bound = { q_deg2ps3 = 0.03, rate_sigma_degps = 2.0, apart_deg = 10.0 }
+//                                         what the angles of targets at a line array cannot be told better than
+//                                         (evaluation/angle_bound.hpp); all of its keys are optional
 #pragma once
 
+#include <optional>
+
+#include "truebearing/evaluation/angle_bound.hpp"
 #include "truebearing/evaluation/run_score.hpp"
 #include "truebearing/io/table_reader.hpp"
 
@@ -13,5 +19,8 @@ namespace truebearing {
 
 /// Asks for the keys above, which go to `rule`. `truth` is the space of the scenario's.
 void read_track_scoring(TableReader& scoring, const StateSpace& truth, ScoringRule& rule);
+
+/// Asks for angle_bound.
+std::optional<AngleBound> read_angle_bound(TableReader& scoring, const StateSpace& truth);
 
 }  // namespace truebearing

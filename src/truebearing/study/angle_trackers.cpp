@@ -46,6 +46,7 @@ JointAngleOptions::Lifetimes read_lifetimes(TableReader table) {
   lifetimes.begin_hits = static_cast<int>(table.integer_or("begin_hits", lifetimes.begin_hits, 1, 3));
   lifetimes.end_presence = table.number_or("end_presence", lifetimes.end_presence, kNonNegative);
   lifetimes.end_misses = static_cast<int>(table.integer_or("end_misses", lifetimes.end_misses, 1, 1000));
+  lifetimes.close_misses = static_cast<int>(table.integer_or("close_misses", lifetimes.close_misses, 0, 1000));
   table.finish();
   return lifetimes;
 }

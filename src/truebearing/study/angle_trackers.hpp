@@ -13,7 +13,8 @@
 //   motion = { q_deg2ps3, q_low_deg2ps3, q_high_deg2ps3, innovation_alpha,
 //              close_deg, close_q_low_deg2ps3, close_q_high_deg2ps3, log_power_variance_per_s }
 //   rate_sigma_degps, iterations, beam, moving_blocks, noise_power (estimated where it is not given)
-//   lifetimes = { begin_presence, begin_hits, end_presence, end_misses }    where targets appear and vanish
+//   lifetimes = { begin_presence, begin_hits, end_presence, end_misses, close_misses }    where targets appear and
+//   vanish
 #pragma once
 
 #include <memory>

@@ -16,6 +16,8 @@ constexpr int kGrid = 128;
 constexpr double kEndFireSine = 0.99;
 constexpr int kMostNewcomers = 4;  // in one interval
 constexpr int kCandidateAge = 3;
+constexpr double kClose = 0.5;  // resolutions of the array
+constexpr int kCloseHits = 3;
 
 // Angle and rate of target n, lead_s later.
 void marginal(const JointAngleState& state, int n, double lead_s, BoundedVector& x, BoundedMatrix& P) {
@@ -177,27 +179,42 @@ void JointAngleTracker::follow_noise() {
   hypotheses_.set_noise_power(noise_power_);
 }
 
+// Of two targets that stand close together neither is heard beside the other: they are given longer.
 void JointAngleTracker::end_tracks(double time_s) {
   const JointAngleOptions::Lifetimes& lifetimes = *options_.lifetimes;
   const AngleLikelihood& likelihood = hypotheses_.scoring().likelihood();
-  int n = 0;
-  for (std::size_t t = 0; t < tracks_.size(); ++t, ++n) {
-    Track& track = tracks_[t];
-    track.misses = likelihood.presence(n) < lifetimes.end_presence ? track.misses + 1 : 0;
+  const LineArray array{interval_.sensors(), interval_.spacing_wavelengths()};
+  const auto are_close = [&](std::size_t i, std::size_t j) {
+    const JointAngleState& best = hypotheses_.best().state;
+    return std::abs(array.distance(best.angle(static_cast<int>(i)), best.angle(static_cast<int>(j)))) < kClose;
+  };
+  const auto is_gone = [&](std::size_t t) {
+    bool close = false;
+    for (std::size_t other = 0; other < tracks_.size(); ++other) close |= other != t && are_close(other, t);
+    return tracks_[t].misses >= lifetimes.end_misses + (close ? lifetimes.close_misses : 0);
+  };
+  for (std::size_t t = 0; t < tracks_.size(); ++t) {
+    tracks_[t].presence = likelihood.presence(static_cast<int>(t));
+    tracks_[t].misses = tracks_[t].presence < lifetimes.end_presence ? tracks_[t].misses + 1 : 0;
   }
-  for (int gone = static_cast<int>(tracks_.size()) - 1; gone >= 0; --gone) {
-    if (tracks_[static_cast<std::size_t>(gone)].misses < lifetimes.end_misses) continue;
+  // The least heard first; without it, those that it was close to are heard by themselves.
+  for (;;) {
+    std::size_t gone = tracks_.size();
+    for (std::size_t t = 0; t < tracks_.size(); ++t)
+      if (is_gone(t) && (gone == tracks_.size() || tracks_[t].presence < tracks_[gone].presence)) gone = t;
+    if (gone == tracks_.size()) return;
+    for (std::size_t t = 0; t < tracks_.size(); ++t)
+      if (t != gone && are_close(t, gone)) tracks_[t].misses = 0;
     hypotheses_.change([&](AngleHypothesis& hypothesis) {
-      remove_target(hypothesis.state, gone);
-      remove_target(hypothesis.prior, gone);
+      remove_target(hypothesis.state, static_cast<int>(gone));
+      remove_target(hypothesis.prior, static_cast<int>(gone));
     });
-    events_.push_back(
-        {TrackEvent::Kind::track_ended, time_s, static_cast<double>(tracks_[static_cast<std::size_t>(gone)].number)});
-    tracks_.erase(tracks_.begin() + gone);
+    events_.push_back({TrackEvent::Kind::track_ended, time_s, static_cast<double>(tracks_[gone].number)});
+    tracks_.erase(tracks_.begin() + static_cast<std::ptrdiff_t>(gone));
   }
 }
 
-// A candidate that is heard again near where it was begins a track.
+// What is heard often enough near the same place begins a track.
 void JointAngleTracker::begin_tracks(double time_s) {
   const JointAngleOptions::Lifetimes& lifetimes = *options_.lifetimes;
   const LineArray array{interval_.sensors(), interval_.spacing_wavelengths()};
@@ -218,17 +235,14 @@ void JointAngleTracker::begin_tracks(double time_s) {
     const auto again = std::find_if(candidates_.begin(), candidates_.end(), [&](const Candidate& candidate) {
       return std::abs(array.distance(candidate.heard.angle_rad, heard.angle_rad)) < 1.0;
     });
-    if (again == candidates_.end()) {
-      if (candidates_.size() < candidates_.capacity()) candidates_.push_back({heard});
-    } else {
-      again->heard = heard;
-      again->age = 0;
-      ++again->hits;
-      if (again->hits >= lifetimes.begin_hits) {
-        confirmed[count++] = heard;
-        candidates_.erase(again);
-      }
-    }
+    const int hits = again == candidates_.end() ? 1 : again->hits + 1;
+    if (again != candidates_.end()) candidates_.erase(again);
+    bool close = false;
+    for (int n = 0; n < best.targets(); ++n) close |= std::abs(array.distance(m[n], heard.angle_rad)) < kClose;
+    if (hits >= (close ? std::max(kCloseHits, lifetimes.begin_hits) : lifetimes.begin_hits))
+      confirmed[count++] = heard;
+    else
+      candidates_.push_back({heard, hits});
     // What else there is, this one explained.
     SignalVector more(2 * N + 2), rates(N + 1);
     more << m.head(N), heard.angle_rad, m.tail(N), heard.log_power;

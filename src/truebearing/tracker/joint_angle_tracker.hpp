@@ -30,12 +30,14 @@ struct JointAngleOptions {
   /// Of a sensor; where it is not given it is estimated.
   std::optional<double> noise_power;
   double noise_alpha = 0.05;  ///< weight of an interval in that estimate
-  /// Targets appear and vanish. Presences are twice a gain of the log likelihood.
+  /// Targets appear and vanish. Presences are twice a gain of the log likelihood: what noise alone gives stays below a
+  /// dozen, a target as loud as noise has hundreds. Of quiet ones a track is kept by more misses, at more false tracks.
   struct Lifetimes {
     double begin_presence = 30.0;
-    int begin_hits = 2;  ///< of the last three intervals
-    double end_presence = 8.0;
-    int end_misses = 4;  ///< in a row
+    int begin_hits = 1;  ///< of the last three intervals; 3 for one heard close to a track
+    double end_presence = 15.0;
+    int end_misses = 1;    ///< in a row
+    int close_misses = 4;  ///< so many more for a target that stands close to another
   };
   std::optional<Lifetimes> lifetimes;
 };
@@ -60,6 +62,7 @@ class JointAngleTracker final : public Tracker {
  private:
   struct Track {
     int number;
+    double presence = 0.0;
     int misses = 0;
   };
   struct Candidate {

@@ -5,7 +5,8 @@
 //     (7)-(13)) ImplicitInnovation    the same without a matrix of the sensors:
 //         d_theta = -[Re(b^H a) - Re(yb^H ya)] / (|b|^2 - |yb|^2),  W^H W = L L^H,  ya = L^-1 W^H a,  yb = L^-1 W^H b
 // The printed P_perp has a transpose too many: with it, which conjugates the projector, no run keeps its targets.
-// Templates on the scalar, so that operations can be counted. The inverses are the papers' own.
+// Templates on the scalar, so that operations can be counted. The inverses are the papers' own; products are lazy, as
+// Eigen's others multiply every result by 1 as well.
 #pragma once
 
 #include <Eigen/Core>
@@ -81,10 +82,10 @@ class RyuInnovation {
     A_.col(last).tail(M) = -b.im.col(n);
     right_.head(M) = a.re.col(n);
     right_.tail(M) = a.im.col(n);
-    normal_.noalias() = A_.transpose() * A_;  // W c - b d_theta = a
+    normal_.noalias() = A_.transpose().lazyProduct(A_);  // W c - b d_theta = a
     detail::invert(normal_, order_);
-    solver_.noalias() = normal_ * A_.transpose();
-    solution_.noalias() = solver_ * right_;
+    solver_.noalias() = normal_.lazyProduct(A_.transpose());
+    solution_.noalias() = solver_.lazyProduct(right_);
     return {solution_[last], Real(1) / normal_(last, last)};
   }
 
@@ -102,22 +103,22 @@ class ProjectionInnovation {
     const Eigen::Index M = W.rows(), N = W.cols();
     // (W^H W)^-1 as that of the real matrix [Re -Im; Im Re].
     gram_.resize(2 * N, 2 * N);
-    gram_.topLeftCorner(N, N).noalias() = W.re.transpose() * W.re;
-    gram_.topLeftCorner(N, N).noalias() += W.im.transpose() * W.im;
-    gram_.bottomLeftCorner(N, N).noalias() = W.re.transpose() * W.im;
-    gram_.bottomLeftCorner(N, N).noalias() -= W.im.transpose() * W.re;
+    gram_.topLeftCorner(N, N).noalias() = W.re.transpose().lazyProduct(W.re);
+    gram_.topLeftCorner(N, N).noalias() += W.im.transpose().lazyProduct(W.im);
+    gram_.bottomLeftCorner(N, N).noalias() = W.re.transpose().lazyProduct(W.im);
+    gram_.bottomLeftCorner(N, N).noalias() -= W.im.transpose().lazyProduct(W.re);
     gram_.topRightCorner(N, N) = -gram_.bottomLeftCorner(N, N);
     gram_.bottomRightCorner(N, N) = gram_.topLeftCorner(N, N);
     detail::invert(gram_, order_);
     const auto re = gram_.topLeftCorner(N, N), im = gram_.bottomLeftCorner(N, N);
-    V_.re.noalias() = W.re * re;  // V = W (W^H W)^-1
-    V_.re.noalias() -= W.im * im;
-    V_.im.noalias() = W.re * im;
-    V_.im.noalias() += W.im * re;
-    P_.re.noalias() = -V_.re * W.re.transpose();  // I - V W^H, equation (7)
-    P_.re.noalias() -= V_.im * W.im.transpose();
-    P_.im.noalias() = V_.re * W.im.transpose();
-    P_.im.noalias() -= V_.im * W.re.transpose();
+    V_.re.noalias() = W.re.lazyProduct(re);  // V = W (W^H W)^-1
+    V_.re.noalias() -= W.im.lazyProduct(im);
+    V_.im.noalias() = W.re.lazyProduct(im);
+    V_.im.noalias() += W.im.lazyProduct(re);
+    P_.re.noalias() = -V_.re.lazyProduct(W.re.transpose());  // I - V W^H, equation (7)
+    P_.re.noalias() -= V_.im.lazyProduct(W.im.transpose());
+    P_.im.noalias() = V_.re.lazyProduct(W.im.transpose());
+    P_.im.noalias() -= V_.im.lazyProduct(W.re.transpose());
     for (Eigen::Index m = 0; m < M; ++m) P_.re(m, m) += Real(1);
     u_.setZero(M, 1);
     y_.setZero(M, 1);
@@ -132,10 +133,10 @@ class ProjectionInnovation {
  private:
   using Matrix = typename SplitMatrix<Real>::Matrix;
   void project(const SplitMatrix<Real>& v, Eigen::Index n, SplitMatrix<Real>& out) {
-    out.re.noalias() = P_.re * v.re.col(n);
-    out.re.noalias() -= P_.im * v.im.col(n);
-    out.im.noalias() = P_.re * v.im.col(n);
-    out.im.noalias() += P_.im * v.re.col(n);
+    out.re.noalias() = P_.re.lazyProduct(v.re.col(n));
+    out.re.noalias() -= P_.im.lazyProduct(v.im.col(n));
+    out.im.noalias() = P_.re.lazyProduct(v.im.col(n));
+    out.im.noalias() += P_.im.lazyProduct(v.re.col(n));
   }
   Matrix gram_;
   SplitMatrix<Real> V_, P_, u_, y_;

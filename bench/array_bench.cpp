@@ -4,8 +4,8 @@
 //     innovations           angular innovations of all targets, three ways
 //     subspace              an interval of the paper: PAST, innovations, filters, records
 //     joint                 an interval of the joint filter, with that many hypotheses at most
-// The recording is the paper-like scenario A at 10 dB, a figure the mean over its 70 intervals after the two that begin the
-// tracks; `growth` in their names: N targets that meet their neighbours, at M sensors.
+// The recording is the paper-like scenario A at 10 dB, a figure the mean over its 70 intervals after the two that begin
+// the tracks; `growth` in their names: N targets that meet their neighbours, at M sensors.
 //     bench_array --benchmark_repetitions=9 --benchmark_enable_random_interleaving=true
 //                 --benchmark_report_aggregates_only=true
 #include <benchmark/benchmark.h>

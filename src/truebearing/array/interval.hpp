@@ -7,13 +7,13 @@
 #include <complex>
 #include <vector>
 
+#include "truebearing/array/simd_lanes.hpp"
 #include "truebearing/measurement/snapshot_block.hpp"
 
 namespace truebearing {
 
 class Interval {
  public:
-  static constexpr int kLanes = 4;
   static constexpr int padded(int sensors) { return (sensors + kLanes - 1) / kLanes * kLanes; }
 
   /// Allocates where the block is larger than any before.

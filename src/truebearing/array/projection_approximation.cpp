@@ -1,6 +1,7 @@
 #include "truebearing/array/projection_approximation.hpp"
 
 #include "truebearing/array/simd_dispatch.hpp"
+#include "truebearing/array/simd_lanes.hpp"
 
 namespace truebearing {
 namespace {
@@ -9,75 +10,154 @@ struct Past {
   int rows, columns;  // of W, rows padded
   double beta;
   int snapshots;
-  const double *x_re, *x_im;  // (rows x snapshots)
-  double *e_re, *e_im;
-  double *W_re, *W_im, *P_re, *P_im;
-  double *y_re, *y_im, *h_re, *h_im;
+  const double *x_re, *x_im;          // (rows x snapshots)
+  double *W_re, *W_im, *P_re, *P_im;  // rows of P, y, g and h padded as well
+  double *y_re, *y_im, *g_re, *g_im, *h_re, *h_im;
 };
 
-[[gnu::always_inline]] inline void step(const Past& s, const double* x_re, const double* x_im) {
-  const int M = s.rows, N = s.columns;
-  for (int n = 0; n < N; ++n) {  // y = W^H x
-    const double *re = s.W_re + n * M, *im = s.W_im + n * M;
-    double y_re = 0.0, y_im = 0.0;
-#pragma omp simd reduction(+ : y_re, y_im)
-    for (int m = 0; m < M; ++m) {
-      y_re += re[m] * x_re[m] + im[m] * x_im[m];
-      y_im += re[m] * x_im[m] - im[m] * x_re[m];
+// Of columns first .. first + kColumns - 1: y = W^H x
+template <std::size_t kColumns>
+[[gnu::always_inline]] inline void project(const Past& s, int first, const double* x_re, const double* x_im) {
+  Lanes y_re[kColumns] = {}, y_im[kColumns] = {};
+  for (int m = 0; m < s.rows; m += kLanes) {
+    Lanes re, im, w_re, w_im;
+    load(x_re + m, re);
+    load(x_im + m, im);
+#pragma GCC unroll 8
+    for (int n = 0; n < int(kColumns); ++n) {
+      load(s.W_re + (first + n) * s.rows + m, w_re);
+      load(s.W_im + (first + n) * s.rows + m, w_im);
+      y_re[n] += w_re * re;
+      y_re[n] += w_im * im;
+      y_im[n] += w_re * im;
+      y_im[n] -= w_im * re;
     }
-    s.y_re[n] = y_re;
-    s.y_im[n] = y_im;
   }
-  for (int n = 0; n < N; ++n) s.h_re[n] = s.h_im[n] = 0.0;
-  for (int j = 0; j < N; ++j) {  // h = P y
-    const double *re = s.P_re + j * N, *im = s.P_im + j * N;
-    for (int i = 0; i < N; ++i) {
-      s.h_re[i] += re[i] * s.y_re[j] - im[i] * s.y_im[j];
-      s.h_im[i] += re[i] * s.y_im[j] + im[i] * s.y_re[j];
+#pragma GCC unroll 8
+  for (int n = 0; n < int(kColumns); ++n) {
+    s.y_re[first + n] = sum(y_re[n]);
+    s.y_im[first + n] = sum(y_im[n]);
+  }
+}
+
+// One snapshot. kColumns: of W where that is known beforehand, so that a group of its rows stays in registers; else 0.
+template <std::size_t kColumns>
+[[gnu::always_inline]] inline void step(const Past& s, const double* x_re, const double* x_im) {
+  const int M = s.rows, N = kColumns > 0 ? int(kColumns) : s.columns;
+  if constexpr (kColumns > 0)
+    project<kColumns>(s, 0, x_re, x_im);
+  else
+    for (int n = 0; n < N; ++n) project<1>(s, n, x_re, x_im);
+  const int padded = Interval::padded(N);
+#pragma GCC unroll 2
+  for (int i = 0; i < padded; i += kLanes) {  // h = P y
+    Lanes h_re = {}, h_im = {}, re, im;
+#pragma GCC unroll 8
+    for (int j = 0; j < N; ++j) {
+      load(s.P_re + j * padded + i, re);
+      load(s.P_im + j * padded + i, im);
+      h_re += re * s.y_re[j];
+      h_re -= im * s.y_im[j];
+      h_im += re * s.y_im[j];
+      h_im += im * s.y_re[j];
     }
+    store(h_re, s.h_re + i);
+    store(h_im, s.h_im + i);
   }
   double power = s.beta;  // beta + y^H h, real as P is Hermitian
   for (int n = 0; n < N; ++n) power += s.y_re[n] * s.h_re[n] + s.y_im[n] * s.h_im[n];
   const double inverse = 1.0 / power, forget = 1.0 / s.beta;
+#pragma GCC unroll 2
+  for (int i = 0; i < padded; i += kLanes) {
+    Lanes h_re, h_im;
+    load(s.h_re + i, h_re);
+    load(s.h_im + i, h_im);
+    store(h_re * inverse, s.g_re + i);
+    store(h_im * inverse, s.g_im + i);
+  }
 
-  double *e_re = s.e_re, *e_im = s.e_im;  // e = x - W y
-#pragma omp simd
-  for (int m = 0; m < M; ++m) {
-    e_re[m] = x_re[m];
-    e_im[m] = x_im[m];
-  }
-  for (int n = 0; n < N; ++n) {
-    const double *re = s.W_re + n * M, *im = s.W_im + n * M;
-    const double y_re = s.y_re[n], y_im = s.y_im[n];
-#pragma omp simd
-    for (int m = 0; m < M; ++m) {
-      e_re[m] -= re[m] * y_re - im[m] * y_im;
-      e_im[m] -= re[m] * y_im + im[m] * y_re;
+  for (int m = 0; m < M; m += kLanes) {
+    constexpr std::size_t kKept = kColumns > 0 ? kColumns : 1;
+    Lanes w_re[kKept], w_im[kKept], e_re, e_im;
+    load(x_re + m, e_re);
+    load(x_im + m, e_im);
+#pragma GCC unroll 8
+    for (int n = 0; n < N; ++n) {  // e = x - W y
+      Lanes &re = w_re[std::size_t(n) % kKept], &im = w_im[std::size_t(n) % kKept];
+      load(s.W_re + n * M + m, re);
+      load(s.W_im + n * M + m, im);
+      e_re -= re * s.y_re[n];
+      e_re += im * s.y_im[n];
+      e_im -= re * s.y_im[n];
+      e_im -= im * s.y_re[n];
+    }
+#pragma GCC unroll 8
+    for (int n = 0; n < N; ++n) {  // W = W + e g^H
+      Lanes &re = w_re[std::size_t(n) % kKept], &im = w_im[std::size_t(n) % kKept];
+      if constexpr (kColumns == 0) {
+        load(s.W_re + n * M + m, re);
+        load(s.W_im + n * M + m, im);
+      }
+      re += e_re * s.g_re[n];
+      re += e_im * s.g_im[n];
+      im += e_im * s.g_re[n];
+      im -= e_re * s.g_im[n];
+      store(re, s.W_re + n * M + m);
+      store(im, s.W_im + n * M + m);
     }
   }
-  for (int n = 0; n < N; ++n) {  // W = W + e g^H
-    double *re = s.W_re + n * M, *im = s.W_im + n * M;
-    const double g_re = s.h_re[n] * inverse, g_im = s.h_im[n] * inverse;
-#pragma omp simd
-    for (int m = 0; m < M; ++m) {
-      re[m] += e_re[m] * g_re + e_im[m] * g_im;
-      im[m] += e_im[m] * g_re - e_re[m] * g_im;
+#pragma GCC unroll 2
+  for (int i = 0; i < padded; i += kLanes) {  // P = Tri{P - g h^H} / beta
+    Lanes h_re, h_im, re, im;
+    load(s.h_re + i, h_re);
+    load(s.h_im + i, h_im);
+#pragma GCC unroll 8
+    for (int j = 0; j < N; ++j) {
+      load(s.P_re + j * padded + i, re);
+      load(s.P_im + j * padded + i, im);
+      re -= h_re * s.g_re[j];
+      re -= h_im * s.g_im[j];
+      im -= h_im * s.g_re[j];
+      im += h_re * s.g_im[j];
+      store(forget * re, s.P_re + j * padded + i);
+      store(forget * im, s.P_im + j * padded + i);
     }
   }
-  for (int j = 0; j < N; ++j) {  // P = Tri{P - g h^H} / beta
-    double *re = s.P_re + j * N, *im = s.P_im + j * N;
-    const double h_re = s.h_re[j] * inverse, h_im = s.h_im[j] * inverse;
-    for (int i = j; i < N; ++i) {
-      re[i] = forget * (re[i] - (s.h_re[i] * h_re + s.h_im[i] * h_im));
-      im[i] = forget * (im[i] - (s.h_im[i] * h_re - s.h_re[i] * h_im));
-      s.P_re[i * N + j] = re[i];
-      s.P_im[i * N + j] = -im[i];
+#pragma GCC unroll 8
+  for (int j = 0; j < N; ++j) {
+#pragma GCC unroll 8
+    for (int i = 0; i < j; ++i) {
+      s.P_re[j * padded + i] = s.P_re[i * padded + j];
+      s.P_im[j * padded + i] = -s.P_im[i * padded + j];
     }
-    im[j] = 0.0;
+    s.P_im[j * padded + j] = 0.0;
   }
 }
+template <std::size_t kColumns>
+[[gnu::always_inline]] inline void steps(const Past& s) {
+  for (int t = 0; t < s.snapshots; ++t) step<kColumns>(s, s.x_re + t * s.rows, s.x_im + t * s.rows);
+}
 [[gnu::always_inline]] inline void past_loops(const Past& s) {
-  for (int t = 0; t < s.snapshots; ++t) step(s, s.x_re + t * s.rows, s.x_im + t * s.rows);
+  switch (s.columns) {
+    case 1:
+      return steps<1>(s);
+    case 2:
+      return steps<2>(s);
+    case 3:
+      return steps<3>(s);
+    case 4:
+      return steps<4>(s);
+    case 5:
+      return steps<5>(s);
+    case 6:
+      return steps<6>(s);
+    case 7:
+      return steps<7>(s);
+    case 8:
+      return steps<8>(s);
+    default:
+      return steps<0>(s);
+  }
 }
 TRUEBEARING_FOR_AVX2(past, (const Past& s), (s))
 
@@ -88,17 +168,17 @@ void ProjectionApproximation::begin(const Eigen::MatrixXcd& basis) {
   W_.setZero(padded, N);
   W_.re.topRows(M) = basis.real();
   W_.im.topRows(M) = basis.imag();
-  P_.re.setIdentity(N, N);
-  P_.im.setZero(N, N);
-  e_.setZero(2 * padded);
-  work_.setZero(4 * N);
+  const Eigen::Index padded_columns = Interval::padded(static_cast<int>(N));
+  P_.re.setIdentity(padded_columns, N);
+  P_.im.setZero(padded_columns, N);
+  work_.setZero(padded_columns, 6);
 }
 
 void ProjectionApproximation::update(const Interval& interval) {
-  const Eigen::Index M = W_.rows(), N = W_.cols();
-  past({static_cast<int>(M), static_cast<int>(N), beta_, interval.snapshots(), interval.re(0), interval.im(0),
-        e_.data(), e_.data() + M, W_.re.data(), W_.im.data(), P_.re.data(), P_.im.data(), work_.data(),
-        work_.data() + N, work_.data() + 2 * N, work_.data() + 3 * N});
+  const auto work = [&](Eigen::Index column) { return work_.col(column).data(); };
+  past({static_cast<int>(W_.rows()), static_cast<int>(W_.cols()), beta_, interval.snapshots(), interval.re(0),
+        interval.im(0), W_.re.data(), W_.im.data(), P_.re.data(), P_.im.data(), work(0), work(1), work(2), work(3),
+        work(4), work(5)});
 }
 
 }  // namespace truebearing

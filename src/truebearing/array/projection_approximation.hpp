@@ -27,9 +27,8 @@ class ProjectionApproximation {
  private:
   double beta_;
   SplitMatrix<double> W_;
-  SplitMatrix<double> P_;  // (N x N), Hermitian
-  Eigen::VectorXd e_;      // x - W y, real and imaginary part
-  Eigen::VectorXd work_;   // y and h, the same
+  SplitMatrix<double> P_;  // (N x N), Hermitian; rows padded as those of W
+  Eigen::MatrixXd work_;   // y, g and h (padded N), real and imaginary parts as columns
 };
 
 }  // namespace truebearing

@@ -8,8 +8,6 @@
 namespace truebearing {
 namespace {
 
-constexpr int kLanes = Interval::kLanes;
-
 // The lower triangle, in whole columns from the diagonal's group of lanes on, of X X^T.
 [[gnu::always_inline]] inline void outer_loops(int rows, int columns, const double* X, double scale, double* R) {
   for (int j = 0; j < rows; ++j) {

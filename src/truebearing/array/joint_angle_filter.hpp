@@ -79,8 +79,9 @@ class JointAngleUpdate {
  private:
   AngleLikelihood likelihood_;
   double log_evidence_ = 0.0;
-  SignalMatrix L_, B_, U_;
-  SignalVector u_, m_, step_;
+  SignalMatrix Ut_;                // [L; Y'] (3N x 2N)
+  SignalMatrix Lt_, JL_, B_, Zt_;  // L', J L, the root of B (2N x 2N); Z' (3N x 2N)
+  SignalVector u_, m_, step_, change_;
 };
 
 /// What an update made of target n, as one measurement of its angle by itself would have: its innovation, and the

@@ -133,31 +133,11 @@ template <std::size_t kColumns>
     s.P_im[j * padded + j] = 0.0;
   }
 }
-template <std::size_t kColumns>
-[[gnu::always_inline]] inline void steps(const Past& s) {
-  for (int t = 0; t < s.snapshots; ++t) step<kColumns>(s, s.x_re + t * s.rows, s.x_im + t * s.rows);
-}
 [[gnu::always_inline]] inline void past_loops(const Past& s) {
-  switch (s.columns) {
-    case 1:
-      return steps<1>(s);
-    case 2:
-      return steps<2>(s);
-    case 3:
-      return steps<3>(s);
-    case 4:
-      return steps<4>(s);
-    case 5:
-      return steps<5>(s);
-    case 6:
-      return steps<6>(s);
-    case 7:
-      return steps<7>(s);
-    case 8:
-      return steps<8>(s);
-    default:
-      return steps<0>(s);
-  }
+  with_count(
+      s.columns, [&](auto known) __attribute__((always_inline)) {
+        for (int t = 0; t < s.snapshots; ++t) step<std::size_t(known)>(s, s.x_re + t * s.rows, s.x_im + t * s.rows);
+      });
 }
 TRUEBEARING_FOR_AVX2(past, (const Past& s), (s))
 

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "truebearing/array/simd_dispatch.hpp"
+#include "truebearing/array/simd_lanes.hpp"
 #include "truebearing/core/angle.hpp"
 
 namespace truebearing {
@@ -42,37 +43,88 @@ struct Products {
   double inverse_noise;
   double *W, *V, *RW;
 };
-[[gnu::always_inline]] inline void products_loops(const Products& p) {
+template <std::size_t kColumns>
+[[gnu::always_inline]] inline void products_of(const Products& p, int first) {
   const int rows = p.rows, N = p.N;
-  for (int j = 0; j < N; ++j) {
-    double *w = p.W + j * rows, *v = p.V + j * rows, *rw = p.RW + j * rows;
-    const double* d = p.D + j * rows;
-#pragma omp simd
-    for (int m = 0; m < rows; ++m) {
-      w[m] = 0.0;
-      v[m] = d[m];
-      rw[m] = 0.0;
-    }
+  for (int m = 0; m < rows; m += kLanes) {
+    Lanes w[kColumns] = {}, v[kColumns], a;
+#pragma GCC unroll 8
+    for (std::size_t c = 0; c < kColumns; ++c) load(p.D + (first + int(c)) * rows + m, v[c]);
     for (int i = 0; i < N; ++i) {
-      const double* a = p.A + i * rows;
-      const double k = p.K[j * N + i], e = p.E[j * N + i];
-#pragma omp simd
-      for (int m = 0; m < rows; ++m) {
-        w[m] += a[m] * k;
-        v[m] -= a[m] * e;
+      load(p.A + i * rows + m, a);
+#pragma GCC unroll 8
+      for (std::size_t c = 0; c < kColumns; ++c) {
+        w[c] += a * p.K[(first + int(c)) * N + i];
+        v[c] -= a * p.E[(first + int(c)) * N + i];
       }
     }
-#pragma omp simd
-    for (int m = 0; m < rows; ++m) v[m] *= p.inverse_noise;
-    for (int i = 0; i < rows; ++i) {
-      const double* R_i = p.R + i * rows;
-      const double w_i = w[i];
-#pragma omp simd
-      for (int m = 0; m < rows; ++m) rw[m] += R_i[m] * w_i;
+#pragma GCC unroll 8
+    for (std::size_t c = 0; c < kColumns; ++c) {
+      store(w[c], p.W + (first + int(c)) * rows + m);
+      store(v[c] * p.inverse_noise, p.V + (first + int(c)) * rows + m);
     }
   }
+  for (int m = 0; m < rows; m += kLanes) {
+    Lanes rw[kColumns] = {}, r;
+    for (int i = 0; i < rows; ++i) {
+      load(p.R + i * rows + m, r);
+#pragma GCC unroll 8
+      for (std::size_t c = 0; c < kColumns; ++c) rw[c] += r * p.W[(first + int(c)) * rows + i];
+    }
+#pragma GCC unroll 8
+    for (std::size_t c = 0; c < kColumns; ++c) store(rw[c], p.RW + (first + int(c)) * rows + m);
+  }
+}
+[[gnu::always_inline]] inline void products_loops(const Products& p) {
+  with_count(
+      p.N, [&](auto known) __attribute__((always_inline)) {
+        if constexpr (known > 0)
+          products_of<std::size_t(known)>(p, 0);
+        else
+          for (int n = 0; n < p.N; ++n) products_of<1>(p, n);
+      });
 }
 TRUEBEARING_FOR_AVX2(products, (const Products& p), (p))
+
+// All of N x N: K = C P^-1 and E = C A'D, with which R^-1 A = A K and R^-1 D = (D - A E) / sigma^2, and of those
+// aRa = A' R^-1 A,  dRa = D' R^-1 A,  dRd = D' R^-1 D.
+struct Inner {
+  int N;
+  double inverse_noise;
+  const double *AA, *DA, *DD, *C, *p;
+  double *K, *E, *aRa, *dRa, *dRd;
+};
+[[gnu::always_inline]] inline void inner_of(int N, const Inner& s) {
+  for (int j = 0; j < N; ++j) {
+    double *K = s.K + j * N, *E = s.E + j * N, *aRa = s.aRa + j * N, *dRa = s.dRa + j * N, *dRd = s.dRd + j * N;
+    const double inverse_p = 1.0 / s.p[j];
+    for (int i = 0; i < N; ++i) {
+      K[i] = s.C[j * N + i] * inverse_p;
+      E[i] = aRa[i] = dRa[i] = 0.0;
+      dRd[i] = s.DD[j * N + i];
+    }
+    for (int k = 0; k < N; ++k) {
+      const double da = s.DA[k * N + j];
+#pragma omp simd
+      for (int i = 0; i < N; ++i) E[i] += s.C[k * N + i] * da;
+    }
+    for (int k = 0; k < N; ++k) {
+      const double K_k = K[k], E_k = E[k];
+#pragma omp simd
+      for (int i = 0; i < N; ++i) {
+        aRa[i] += s.AA[k * N + i] * K_k;
+        dRa[i] += s.DA[k * N + i] * K_k;
+        dRd[i] -= s.DA[k * N + i] * E_k;
+      }
+    }
+    for (int i = 0; i < N; ++i) dRd[i] *= s.inverse_noise;
+  }
+}
+[[gnu::always_inline]] inline void inner_loops(const Inner& s) {
+  with_count(
+      s.N, [&](auto known) __attribute__((always_inline)) { inner_of(known > 0 ? int(known) : s.N, s); });
+}
+TRUEBEARING_FOR_AVX2(inner, (const Inner& s), (s))
 
 // Twice the log likelihood that a signal adds, with Ns snapshots: a' R^-1 R_hat R^-1 a is `found`, a' R^-1 a
 // `expected`, R without the signal.
@@ -154,7 +206,7 @@ bool AngleLikelihood::evaluate(const RealInterval& interval, const SignalVector&
   presence_.setZero(N);
   SignalVector expected = SignalVector::Zero(N), found = SignalVector::Zero(N);
   double residual = 0.0;
-  SignalMatrix K(N, N), E(N, N);
+  SignalMatrix K(N, N), E(N, N), aRa(N, N), dRa(N, N), dRd(N, N);
   SignalVector p(N);
   for (int n = 0; n < N; ++n) p[n] = std::exp(m[N + n]);
   const double inverse_noise = 1.0 / noise_power;
@@ -163,29 +215,10 @@ bool AngleLikelihood::evaluate(const RealInterval& interval, const SignalVector&
     const RealCovariance& block = interval.block(b);
     if (!prepare_block(interval.array(), block, m, rate, middle_s, noise_power)) return false;
     const double Ns = block.snapshots;
-    for (int j = 0; j < N; ++j)
-      for (int i = 0; i < N; ++i) {
-        K(i, j) = C_(i, j) / p[j];  // R^-1 A = A K
-        double sum = 0.0;
-        for (int k = 0; k < N; ++k) sum += C_(i, k) * DA_(j, k);
-        E(i, j) = sum;  // R^-1 D = (D - A E) / sigma^2
-      }
+    inner({N, inverse_noise, AA_.data(), DA_.data(), DD_.data(), C_.data(), p.data(), K.data(), E.data(), aRa.data(),
+           dRa.data(), dRd.data()});
     products({rows, N, A_.data(), D_.data(), block.R.data(), K.data(), E.data(), inverse_noise, W_.data(), V_.data(),
               RW_.data()});
-
-    SignalMatrix aRa(N, N), dRa(N, N), dRd(N, N);
-    for (int j = 0; j < N; ++j)
-      for (int i = 0; i < N; ++i) {
-        double aa = 0.0, da = 0.0, dd = DD_(i, j);
-        for (int k = 0; k < N; ++k) {
-          aa += AA_(i, k) * K(k, j);
-          da += DA_(i, k) * K(k, j);
-          dd -= DA_(i, k) * E(k, j);
-        }
-        aRa(i, j) = aa;
-        dRa(i, j) = da;
-        dRd(i, j) = dd * inverse_noise;
-      }
 
     double explained = 0.0, log_p = 0.0;
     for (int i = 0; i < N; ++i) {

@@ -4,23 +4,25 @@
 #include <numbers>
 
 #include "truebearing/array/simd_dispatch.hpp"
+#include "truebearing/array/simd_lanes.hpp"
 
 namespace truebearing {
 namespace {
 
-// The lower triangle, in whole columns from the diagonal's group of lanes on, of X X^T.
+// X X^T, in squares of lanes: those below the diagonal and on it, and their mirrors.
 [[gnu::always_inline]] inline void outer_loops(int rows, int columns, const double* X, double scale, double* R) {
-  for (int j = 0; j < rows; ++j) {
-    double* R_j = R + j * rows;
-    const int first = j / kLanes * kLanes;
-    for (int i = first; i < rows; ++i) R_j[i] = 0.0;
-    for (int c = 0; c < columns; ++c) {
-      const double* x = X + c * rows;
-      const double x_j = x[j] * scale;
-#pragma omp simd
-      for (int i = first; i < rows; ++i) R_j[i] += x[i] * x_j;
+  for (int j = 0; j < rows; j += kLanes)
+    for (int i = j; i < rows; i += kLanes) {
+      Lanes square[kLanes] = {}, x;
+      for (int c = 0; c < columns; ++c) {
+        const double* x_j = X + c * rows + j;
+        load(X + c * rows + i, x);
+#pragma GCC unroll 4
+        for (int k = 0; k < kLanes; ++k) square[k] += x * x_j[k];
+      }
+#pragma GCC unroll 4
+      for (int k = 0; k < kLanes; ++k) store(square[k] * scale, R + (j + k) * rows + i);
     }
-  }
   for (int j = 0; j < rows; ++j)
     for (int i = 0; i < j; ++i) R[j * rows + i] = R[i * rows + j];
 }

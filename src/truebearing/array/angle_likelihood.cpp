@@ -11,28 +11,43 @@
 namespace truebearing {
 namespace {
 
-[[gnu::always_inline]] inline double dot(const double* x, const double* y, int rows) {
-  double sum = 0.0;
-#pragma omp simd reduction(+ : sum)
-  for (int i = 0; i < rows; ++i) sum += x[i] * y[i];
-  return sum;
-}
-
-// The Gram matrices of the columns of A and D (rows x N); N x N each, with leading dimension kMaxAngleStates.
+// The Gram matrices of the columns of A and D (rows x N); N x N each.
 struct Grams {
   int rows, N;
   const double *A, *D;
   double *AA, *DA, *DD;
 };
-[[gnu::always_inline]] inline void grams_loops(const Grams& g) {
-  for (int j = 0; j < g.N; ++j)
-    for (int i = 0; i < g.N; ++i) {
-      const double *a_i = g.A + i * g.rows, *a_j = g.A + j * g.rows, *d_i = g.D + i * g.rows, *d_j = g.D + j * g.rows;
-      g.DA[j * g.N + i] = dot(d_i, a_j, g.rows);
-      if (i < j) continue;
-      g.AA[j * g.N + i] = g.AA[i * g.N + j] = dot(a_i, a_j, g.rows);
-      g.DD[j * g.N + i] = g.DD[i * g.N + j] = dot(d_i, d_j, g.rows);
+// Columns i .. i + kColumns - 1 with column j.
+template <std::size_t kColumns>
+[[gnu::always_inline]] inline void grams_of(const Grams& g, int i, int j) {
+  Lanes AA[kColumns] = {}, DA[kColumns] = {}, DD[kColumns] = {}, a_i, d_i, a_j, d_j;
+  for (int m = 0; m < g.rows; m += kLanes) {
+    load(g.A + j * g.rows + m, a_j);
+    load(g.D + j * g.rows + m, d_j);
+#pragma GCC unroll 8
+    for (std::size_t c = 0; c < kColumns; ++c) {
+      load(g.A + (i + int(c)) * g.rows + m, a_i);
+      load(g.D + (i + int(c)) * g.rows + m, d_i);
+      AA[c] += a_i * a_j;
+      DA[c] += d_i * a_j;
+      DD[c] += d_i * d_j;
     }
+  }
+#pragma GCC unroll 8
+  for (std::size_t c = 0; c < kColumns; ++c) {
+    const int at = j * g.N + i + int(c);
+    g.AA[at] = sum(AA[c]);
+    g.DA[at] = sum(DA[c]);
+    g.DD[at] = sum(DD[c]);
+  }
+}
+[[gnu::always_inline]] inline void grams_loops(const Grams& g) {
+  constexpr int kTogether = 3;  // as many as there are registers for
+  for (int j = 0; j < g.N; ++j) {
+    int i = 0;
+    for (; i + kTogether <= g.N; i += kTogether) grams_of<kTogether>(g, i, j);
+    for (; i < g.N; ++i) grams_of<1>(g, i, j);
+  }
 }
 TRUEBEARING_FOR_AVX2(grams, (const Grams& g), (g))
 

@@ -16,7 +16,7 @@ namespace {
 // where their square part is not positive definite.
 [[gnu::always_inline]] inline bool root_loops(int rows, int n, double* A) {
   for (int j = 0; j < n; ++j) {
-    double* A_j = A + j * rows;
+    double* __restrict A_j = A + j * rows;
     for (int k = 0; k < j; ++k) {
       const double* A_k = A + k * rows;
       const double factor = A_k[j];
@@ -65,7 +65,7 @@ struct Model {
 [[gnu::always_inline]] inline void solve_model_of(int N, const Model& s) {
   const int n = 2 * N, rows = 3 * N;
   for (int j = 0; j < n; ++j) {
-    double *JL_j = s.JL + j * n, *B_j = s.B + j * n;
+    double* __restrict JL_j = s.JL + j * n, * __restrict B_j = s.B + j * n;  // so that sums stay in registers
     const double* L_j = s.Ut + j * rows;
     for (int i = 0; i < n; ++i) JL_j[i] = B_j[i] = 0.0;
     B_j[j] = 1.0;

@@ -13,11 +13,12 @@ bool is_finite(std::complex<double> value) {
 }  // namespace
 
 void Interval::take(const SnapshotBlock& block) {
+  const bool is_as_before = block.sensors == sensors_;
   sensors_ = block.sensors;
   block_snapshots_ = block.snapshots();
   spacing_wavelengths_ = block.spacing_wavelengths;
   interval_s_ = block.interval_s;
-  if (re_.rows() != padded(sensors_) || re_.cols() < block_snapshots_) {
+  if (!is_as_before || re_.cols() < block_snapshots_) {
     re_.setZero(padded(sensors_), block_snapshots_);
     im_.setZero(padded(sensors_), block_snapshots_);
     live_.assign(static_cast<std::size_t>(sensors_), 1.0);

@@ -33,6 +33,7 @@ TRUEBEARING_FOR_AVX2(outer, (int rows, int columns, const double* X, double scal
 
 void RealInterval::take(const Interval& interval, int blocks) {
   const int M = interval.sensors();
+  const bool is_as_before = array_.pairs == M / 2 && array_.middle == (M % 2 == 1);
   array_.pairs = M / 2;
   array_.middle = M % 2 == 1;
   array_.padded = Interval::padded(M);
@@ -48,7 +49,7 @@ void RealInterval::take(const Interval& interval, int blocks) {
   array_.live_rows = static_cast<int>(array_.live.sum());
 
   const int Ns = interval.block_snapshots();
-  if (rows_.rows() != array_.padded || rows_.cols() < 2 * Ns) rows_.setZero(array_.padded, 2 * Ns);
+  if (!is_as_before || rows_.cols() < 2 * Ns) rows_.setZero(array_.padded, 2 * Ns);
   if (static_cast<int>(blocks_.size()) < blocks) blocks_.resize(static_cast<std::size_t>(blocks));
   count_ = 0;
   snapshots_ = 0.0;

@@ -8,6 +8,10 @@
 namespace truebearing {
 namespace {
 
+// So much of a steering vector has to lie in the subspace for a peak to be a signal's; of a sidelobe's, which is a peak
+// as well, a tenth or two does.
+constexpr double kLeastShare = 0.5;
+
 // |P_perp a|^2 / M at that sine: the square of the steering vector's distance from the subspace.
 double distance_from(const LineArray& array, const Eigen::MatrixXcd& E, double sine) {
   Eigen::VectorXcd a(array.sensors);
@@ -30,6 +34,8 @@ std::vector<double> music_angles(const LineArray& array, const Eigen::MatrixXcd&
     double distance, sine;
   };
   std::vector<Peak> peaks;
+  const double live = static_cast<double>((E.rowwise().squaredNorm().array() > 1e-20).count());
+  const double farthest = 1.0 - kLeastShare * live / array.sensors;
   for (int i = 1; i + 1 < grid; ++i) {
     const std::size_t at = static_cast<std::size_t>(i);
     if (!(distance[at] <= distance[at - 1] && distance[at] < distance[at + 1])) continue;
@@ -52,6 +58,7 @@ std::vector<double> music_angles(const LineArray& array, const Eigen::MatrixXcd&
         f_second = distance_from(array, E, second);
       }
     }
+    if (std::min(f_first, f_second) > farthest) continue;
     peaks.push_back({std::min(f_first, f_second), 0.5 * (low + high)});
   }
   std::sort(peaks.begin(), peaks.end(), [](const Peak& a, const Peak& b) { return a.distance < b.distance; });

@@ -35,11 +35,15 @@ std::span<const StepRecord> SubspaceAngleTracker::step(const Measurement& measur
     for (StepRecord& record : records_) record.status = StepStatus::rejected;
     return records_;
   }
-  const bool usable = verdict == StreamGuard::Verdict::usable;
+  bool usable = verdict == StreamGuard::Verdict::usable;
   if (filters_.empty()) {
     if (!usable || !begin(measurement.time_s)) return {};
     used_time_s_ = measurement.time_s;
     return publish(measurement, 0.0, false);
+  }
+  if (usable && interval_.sensors() != orthogonal_.basis().rows()) {  // another array than the subspace is of
+    ++guard_.counts.failed;
+    usable = false;
   }
   if (usable) follow_subspace();
   return publish(measurement, measurement.time_s - used_time_s_, usable);

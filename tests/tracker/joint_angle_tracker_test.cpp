@@ -230,6 +230,25 @@ TEST(JointAngleTracker, TargetThatAppearsGetsATrackAndOneThatVanishesLosesIt) {
   }
 }
 
+// A signal so strong that what a grid of angles leaves of it could be heard once more in the same interval.
+TEST(JointAngleTracker, StrongNewcomerIsOneTrackOfTwoIntervals) {
+  for (std::uint64_t run = 0; run < 10; ++run) {
+    const Recording recording = recording_of(40, run, [&](int k) {
+      ArrayScene scene = scene_of({-30.0});
+      if (k >= 20) {
+        scene.angles_rad.push_back(radians(25.3 + 0.07 * static_cast<double>(run)));
+        scene.powers.push_back(100.0);
+      }
+      return scene;
+    });
+    JointAngleTracker tracker(lifetime_options(1));
+    const Published steps = track(tracker, recording.measurements);
+    ASSERT_EQ(tracker.events().size(), 2u) << run;
+    EXPECT_EQ(tracker.events()[1].time_s, 21.0) << run;
+    EXPECT_EQ(steps.back().size(), 2u) << run;
+  }
+}
+
 TEST(JointAngleTracker, WithLifetimesMayBeginWithNobody) {
   const Recording recording = recording_of(40, 0, [](int k) {
     return k < 10 ? scene_of({}) : scene_of({-20.0, 30.0}, 1.0);

@@ -235,14 +235,18 @@ void JointAngleTracker::begin_tracks(double time_s) {
     const auto again = std::find_if(candidates_.begin(), candidates_.end(), [&](const Candidate& candidate) {
       return std::abs(array.distance(candidate.heard.angle_rad, heard.angle_rad)) < 1.0;
     });
-    const int hits = again == candidates_.end() ? 1 : again->hits + 1;
-    if (again != candidates_.end()) candidates_.erase(again);
-    bool close = false;
-    for (int n = 0; n < best.targets(); ++n) close |= std::abs(array.distance(m[n], heard.angle_rad)) < kClose;
-    if (hits >= (close ? std::max(kCloseHits, lifetimes.begin_hits) : lifetimes.begin_hits))
-      confirmed[count++] = heard;
-    else
-      candidates_.push_back({heard, hits});
+    bool leftover = false;  // what the grid left of one that was heard in this interval
+    for (int n = best.targets(); n < N; ++n) leftover |= std::abs(array.distance(m[n], heard.angle_rad)) < 1.0;
+    if (!leftover) {
+      const int hits = again == candidates_.end() ? 1 : again->hits + 1;
+      if (again != candidates_.end()) candidates_.erase(again);
+      bool close = false;
+      for (int n = 0; n < best.targets(); ++n) close |= std::abs(array.distance(m[n], heard.angle_rad)) < kClose;
+      if (hits >= (close ? std::max(kCloseHits, lifetimes.begin_hits) : lifetimes.begin_hits))
+        confirmed[count++] = heard;
+      else
+        candidates_.push_back({heard, hits});
+    }
     // What else there is, this one explained.
     SignalVector more(2 * N + 2), rates(N + 1);
     more << m.head(N), heard.angle_rad, m.tail(N), heard.log_power;

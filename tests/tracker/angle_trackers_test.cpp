@@ -358,6 +358,59 @@ TEST(AngleTrackers, MayFindOutHowManyTargetsThereAre) {
   }
 }
 
+TEST(AngleTrackers, OtherBlockOfTheSameTimeIsUsedAsWell) {
+  const Recording recording = three_targets(12), again = three_targets(12, 1);
+  for (const Kind& kind : kinds()) {
+    const auto tracker = kind.make(3);
+    for (std::size_t k = 0; k < 12; ++k) {
+      const auto once = tracker->step(recording.measurements[k]);
+      const std::vector<StepRecord> before(once.begin(), once.end());
+      const auto twice = tracker->step(again.measurements[k]);
+      for (std::size_t n = 0; n < before.size(); ++n) {
+        EXPECT_EQ(twice[n].status, StepStatus::ok) << kind.name;
+        EXPECT_TRUE(is_covariance(twice[n].P)) << kind.name;
+        EXPECT_LT(twice[n].P(0, 0), before[n].P(0, 0)) << kind.name;
+      }
+    }
+    EXPECT_EQ(tracker->counts().repeated, 0) << kind.name;
+  }
+}
+
+TEST(AngleTrackers, HugeGapLeavesFiniteStates) {
+  const Recording recording = three_targets(12);
+  for (const Kind& kind : kinds())
+    for (const double gap_s : {1e3, 1e7}) {
+      const auto tracker = kind.make(3);
+      for (std::size_t k = 0; k < 12; ++k) {
+        Measurement measurement = recording.measurements[k];
+        if (k >= 8) measurement.time_s += gap_s;
+        for (const StepRecord& record : tracker->step(measurement)) {
+          EXPECT_TRUE(record.x.allFinite()) << kind.name << ", " << gap_s;
+          EXPECT_TRUE(is_covariance(record.P)) << kind.name << ", " << gap_s;
+        }
+      }
+    }
+}
+
+// Values whose squares are beyond all numbers, in one interval.
+TEST(AngleTrackers, AbsurdValuesAreFlaggedAndSurvived) {
+  const Recording recording = three_targets(30);
+  const Recording burst = changed(recording, [](std::size_t k, std::span<std::complex<double>> values) {
+    if (k != 10) return;
+    for (std::complex<double>& value : values) value *= 1e200;
+  });
+  for (const Kind& kind : kinds()) {
+    const auto tracker = kind.make(3);
+    const Published published = track(*tracker, burst.measurements);
+    for (const std::vector<StepRecord>& records : published)
+      for (const StepRecord& record : records) {
+        EXPECT_TRUE(record.x.allFinite()) << kind.name;
+        EXPECT_TRUE(is_covariance(record.P)) << kind.name;
+      }
+    EXPECT_LT(angle_errors(published, recording, 25).last_deg, 1.0) << kind.name;
+  }
+}
+
 // A log has one array throughout; a stream that turns to another must not break anything.
 TEST(AngleTrackers, ArrayOfAnotherSizeOnTheWayBreaksNothing) {
   for (const Kind& kind : kinds())

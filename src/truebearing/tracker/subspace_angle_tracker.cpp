@@ -99,6 +99,12 @@ const SplitMatrix<double>& SubspaceAngleTracker::basis() const {
 
 void SubspaceAngleTracker::follow_subspace() {
   const int N = static_cast<int>(filters_.size()), M = interval_.sensors();
+  if (!basis().re.allFinite() || !basis().im.allFinite()) {  // the last interval was beyond all numbers: begin again
+    sample_covariance(interval_, covariance_);
+    const Eigen::MatrixXcd E = signal_subspace(covariance_, N).basis;
+    past_.begin(E);
+    orthogonal_.begin(E);
+  }
   switch (options_.subspace) {
     case SubspaceAngleOptions::Subspace::projection_approximation:
       past_.update(interval_);

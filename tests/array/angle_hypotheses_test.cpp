@@ -181,14 +181,18 @@ TEST(AngleHypotheses, StayAsTheyWereWhereNothingCanBeScored) {
 }
 
 TEST(AngleHypotheses, ChangeReachesAllOfThem) {
-  AngleHypotheses hypotheses;
-  hypotheses.begin(options(8), start(0.4));
-  RandomStream random({26, Role::evaluation, 0}, StreamId::test);
-  for (int k = 1; k < kIntervals && hypotheses.count() == 1; ++k)
-    hypotheses.update(interval(random, scene_at(k, 0.4)), 1.0, 0.0);
-  ASSERT_GT(hypotheses.count(), 1);
-  hypotheses.change([](AngleHypothesis& hypothesis) { remove_target(hypothesis.state, 2); });
-  for (int h = 0; h < hypotheses.count(); ++h) EXPECT_EQ(hypotheses.hypothesis(h).state.targets(), 2);
+  int most = 0;
+  for (std::uint64_t run = 0; run < 5; ++run) {
+    RandomStream random({21, Role::evaluation, run}, StreamId::test);
+    AngleHypotheses hypotheses;
+    hypotheses.begin(options(8), start(0.4));
+    for (int k = 1; k < kIntervals && hypotheses.count() == 1; ++k)
+      hypotheses.update(interval(random, scene_at(k, 0.4)), 1.0, 0.0);
+    hypotheses.change([](AngleHypothesis& hypothesis) { remove_target(hypothesis.state, 2); });
+    for (int h = 0; h < hypotheses.count(); ++h) EXPECT_EQ(hypotheses.hypothesis(h).state.targets(), 2);
+    most = std::max(most, hypotheses.count());
+  }
+  EXPECT_GT(most, 1);
 }
 
 }  // namespace

@@ -293,14 +293,16 @@ TEST(LineArrayScenario, RandomTargetsMayComeAndGo) {
   const std::unique_ptr<Scenario> scenario =
       read(kTime + kArray + kSignals + kRandom + "appears_s = { uniform = [-10.0, 10.0] }\nstays_s = 6.0\n");
   int absent = 0, present = 0;
-  for (std::uint64_t number = 0; number < 20; ++number)
-    for (const Truth& truth : scenario->simulate({1, Role::evaluation, number}).truth) {
+  for (std::uint64_t number = 0; number < 20; ++number) {
+    const Recording recording = scenario->simulate({1, Role::evaluation, number});
+    for (const Truth& truth : recording.truth) {
       int stays = 0;
       for (const BoundedVector& x : truth.x) stays += !std::isnan(x[0]);
       EXPECT_LE(stays, 4);  // 6 s, and from the first interval on for those that were there before: at most 1 s more
       present += stays;
       absent += static_cast<int>(truth.x.size()) - stays;
     }
+  }
   EXPECT_GT(present, 100);
   EXPECT_GT(absent, 100);
 }

@@ -259,8 +259,9 @@ TEST(AngleTrackers, NeighbourIsTheNearestOther) {
     const double resolutions = (std::sin(records[2].x[0]) - std::sin(records[1].x[0])) * 0.5 * 15.0;
     EXPECT_NEAR(records[2].neighbour->closeness, 1.0 / (1.0 + resolutions * resolutions), 1e-12) << kind.name;
     const auto alone = kind.make(1);
-    for (const StepRecord& record : track(*alone, recording.measurements).back())
-      EXPECT_FALSE(record.neighbour) << kind.name;
+    const std::vector<StepRecord> of_one = track(*alone, recording.measurements).back();
+    ASSERT_EQ(of_one.size(), 1u) << kind.name;
+    EXPECT_FALSE(of_one[0].neighbour) << kind.name;
   }
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include <Eigen/LU>
 
 #include "tests/support/array_scene.hpp"
@@ -21,6 +23,7 @@ JointAngleState prior(const ArrayScene& scene, std::uint64_t run = 0, double ang
   JointAngleState state;
   state.x.resize(3 * kTargets);
   state.q.setConstant(kTargets, 1e-6);
+  state.innovations.setZero(kTargets);
   Eigen::VectorXd sigma(3 * kTargets);
   sigma << Eigen::Vector3d::Constant(angle_sigma_rad), Eigen::Vector3d::Constant(0.5), Eigen::Vector3d::Constant(0.02);
   Eigen::MatrixXd C(3 * kTargets, 3 * kTargets);
@@ -222,14 +225,55 @@ TEST(JointAnglePrediction, IsThatOfConstantRates) {
   EXPECT_LT((state.P - expected).norm(), 1e-12 * expected.norm());
 }
 
-TEST(JointAngleMotion, ProcessNoiseFollowsTheInnovationBetweenItsLimits) {
-  const JointAngleMotion motion{.q0 = 0.003, .q_low = 0.001, .q_high = 1.0};
-  EXPECT_DOUBLE_EQ(motion.q_after(1.0), 0.003);
-  EXPECT_DOUBLE_EQ(motion.q_after(2.0), 0.024);
-  EXPECT_DOUBLE_EQ(motion.q_after(0.0), 0.001);
-  EXPECT_DOUBLE_EQ(motion.q_after(100.0), 1.0);
-  const JointAngleMotion low{.q0 = 0.1, .q_low = 1e-6, .q_high = 1.0};
-  EXPECT_DOUBLE_EQ(low.q_after(0.1), 0.1 * 0.027);  // of .3 at least
+// A posterior of one target whose angle moved by `e` normalised innovations, half of its variance gone.
+JointAngleState moved_by(double e, const JointAngleState& prior) {
+  JointAngleState posterior = prior;
+  posterior.P(0, 0) *= 0.5;
+  posterior.x[0] += e * std::sqrt(prior.P(0, 0) - posterior.P(0, 0));
+  return posterior;
+}
+
+TEST(JointAngleMotion, ProcessNoiseFollowsAMeanOfInnovationsBetweenItsLimits) {
+  const JointAngleMotion motion{.q0 = 0.003, .q_low = 0.001, .q_high = 1.0, .alpha = 0.5};
+  JointAngleState prior;
+  prior.x.setZero(3);
+  prior.P.setIdentity(3, 3);
+  prior.q.setZero(1);
+  prior.innovations.setZero(1);
+  JointAngleState posterior = moved_by(2.0, prior);
+  adapt(motion, prior, posterior);
+  EXPECT_NEAR(posterior.innovations[0], 1.0, 1e-12);
+  EXPECT_NEAR(posterior.q[0], 0.003 * 9.0, 1e-12);  // s = 1^2 (2 - .5) / .5
+
+  // The other way next time, and the mean is what it was: no manoeuvre.
+  prior.innovations = posterior.innovations;
+  posterior = moved_by(-1.0, prior);
+  adapt(motion, prior, posterior);
+  EXPECT_NEAR(posterior.innovations[0], 0.0, 1e-12);
+  EXPECT_NEAR(posterior.q[0], 0.001, 1e-12);
+
+  prior.innovations.setConstant(1, 5.0);
+  posterior = moved_by(100.0, prior);
+  adapt(motion, prior, posterior);
+  EXPECT_NEAR(posterior.innovations[0], 5.0, 1e-12);  // of 5 at most
+  EXPECT_EQ(posterior.q[0], 1.0);
+}
+
+TEST(JointAngleMotion, ProcessNoiseHasOtherLimitsWhileTargetsAreClose) {
+  const JointAngleMotion motion{
+      .q0 = 0.003, .q_low = 0.001, .q_high = 1.0, .close_rad = 0.05, .close_q_low = 0.01, .close_q_high = 0.02};
+  JointAngleState prior;
+  prior.x.setZero(9);
+  prior.x.head<3>() << 0.0, 0.04, 0.2;
+  prior.P.setIdentity(9, 9);
+  prior.q.setZero(3);
+  prior.innovations.setConstant(3, 5.0);
+  JointAngleState posterior = prior;
+  posterior.P *= 0.5;
+  adapt(motion, prior, posterior);
+  EXPECT_EQ(posterior.q[0], 0.02);
+  EXPECT_EQ(posterior.q[1], 0.02);
+  EXPECT_GT(posterior.q[2], 0.02);
 }
 
 TEST(JointAngleState, AddedTargetLeavesTheOthersAlone) {

@@ -215,6 +215,19 @@ TEST_F(SnapshotLogTest, ValuesThatAreNotFiniteAreMissing) {
   EXPECT_EQ(recording.counts.missing, 1) << "neither snapshot of interval 1 is whole";
 }
 
+TEST(SnapshotBlock, ASensorThatGivesNothingDoesNotSpoilTheOthers) {
+  const std::complex<double> nothing(kNaN, kNaN);
+  const std::vector<std::complex<double>> dead{1.0, nothing, 2.0, 3.0, nothing, 4.0};
+  const std::vector<std::complex<double>> holes{1.0, nothing, 2.0, 3.0, 4.0, nothing};
+  const std::vector<std::complex<double>> empty(6, nothing);
+  const auto is_usable = [](const std::vector<std::complex<double>>& values) {
+    return SnapshotBlock{values, 3}.has_usable_snapshot();
+  };
+  EXPECT_TRUE(is_usable(dead));
+  EXPECT_FALSE(is_usable(holes)) << "two sensors give something, and never both";
+  EXPECT_FALSE(is_usable(empty));
+}
+
 TEST_F(SnapshotLogTest, RepeatedIntervalIsDroppedAndCounted) {
   ForeignLog log;
   log.snapshots().values = {1, 2, 3, kNaN, 5, 6, 7, 8, 1, 2, 3, kNaN, 5, 6, 7, 8, 1, 2, 3, kNaN, 5, 6, 7, 8};

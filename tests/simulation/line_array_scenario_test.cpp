@@ -335,6 +335,8 @@ TEST(LineArrayScenario, MisspeltAndWrongKeysAreNamed) {
   EXPECT_THAT(refusal(good + "appear_s = 4.0\n"), HasSubstr("appears_s"));
   EXPECT_THAT(refusal(kTime + kArray + kSignals + kRandom + "largest = 3.0\n"), HasSubstr("largest_deg"));
   EXPECT_THAT(refusal(kTime + kArray + kSignals + "[random]\ntargets = 40\nstart_deg = 0.0\n"), HasSubstr("targets"));
+  EXPECT_THAT(refusal(kTime + kArray + kSignals + "[[targets]]\nstart_deg = 80.0\nrate_degps = 1.0\n"),
+              HasSubstr("passes 90 deg"));
   EXPECT_THAT(refusal(good + "[phases]\ncrossing_deg = 1.0\n"), HasSubstr("manoeuvre_degps2"));
 }
 

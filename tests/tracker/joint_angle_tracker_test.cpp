@@ -241,7 +241,9 @@ TEST(JointAngleTracker, StrongNewcomerIsOneTrackOfTwoIntervals) {
       }
       return scene;
     });
-    JointAngleTracker tracker(lifetime_options(1));
+    JointAngleOptions options = lifetime_options(1);
+    options.lifetimes->begin_hits = 2;
+    JointAngleTracker tracker(options);
     const Published steps = track(tracker, recording.measurements);
     ASSERT_EQ(tracker.events().size(), 2u) << run;
     EXPECT_EQ(tracker.events()[1].time_s, 21.0) << run;
@@ -261,9 +263,8 @@ TEST(JointAngleTracker, WithLifetimesMayBeginWithNobody) {
   EXPECT_NEAR(std::max(steps.back()[0].x[0], steps.back()[1].x[0]), radians(30.0), radians(1.0));
 }
 
-// Twice a gain of the log likelihood of 30, by noise alone, has a probability of some 1e-7 an angle and interval, and
-// it takes two of three intervals: not one false track is to be expected in 1000 intervals. With a bar of 6 there are
-// some.
+// Twice a gain of the log likelihood of 30, by noise alone, has a probability of some 1e-7 an angle and interval: not
+// one false track is to be expected in 1000 intervals. With a bar of 6 there are some.
 TEST(JointAngleTracker, NoTrackBeginsOfNoise) {
   const auto began = [](double begin_presence) {
     std::size_t false_tracks = 0;

@@ -61,7 +61,7 @@ inline bool measures_snapshots(const std::vector<std::string>& measured) {
 /// Whether there is nothing in a measurement of the recording that a tracker could use.
 inline bool is_unusable(const Recording& recording, const Measurement& measurement) {
   if (measures_snapshots(recording.measured))
-    return !measurement.snapshots || !measurement.snapshots->has_finite_snapshot();
+    return !measurement.snapshots || !measurement.snapshots->has_usable_snapshot();
   if (!measures_bearing_and_frequency(recording.measured)) return measurement.is_missing();
   return measurement.z.size() == 0 || measurement.z.array().isNaN().all();
 }

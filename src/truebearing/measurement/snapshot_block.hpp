@@ -6,6 +6,7 @@
 #include <cmath>
 #include <complex>
 #include <span>
+#include <vector>
 
 namespace truebearing {
 
@@ -24,16 +25,32 @@ struct SnapshotBlock {
                           static_cast<std::size_t>(sensors));
   }
 
-  /// Whether every sensor gave something in that snapshot; in any of them.
-  bool is_finite(int t) const {
-    const auto finite = [](std::complex<double> r) { return std::isfinite(r.real()) && std::isfinite(r.imag()); };
-    const std::span<const std::complex<double>> r = snapshot(t);
-    return std::all_of(r.begin(), r.end(), finite);
+  /// Whether sensor m gave a number in snapshot t; whether all did.
+  bool is_finite(int t, int m) const {
+    const std::complex<double> r =
+        values[static_cast<std::size_t>(t) * static_cast<std::size_t>(sensors) + static_cast<std::size_t>(m)];
+    return std::isfinite(r.real()) && std::isfinite(r.imag());
   }
-  bool has_finite_snapshot() const {
-    for (int t = 0; t < snapshots(); ++t)
-      if (is_finite(t)) return true;
-    return false;
+  bool is_finite(int t) const {
+    for (int m = 0; m < sensors; ++m)
+      if (!is_finite(t, m)) return false;
+    return true;
+  }
+  /// Whether there is a snapshot with a number from every sensor that gives one at all: a sensor that never does is
+  /// dead, and the others do without it.
+  bool has_usable_snapshot() const {
+    int most = 0;  // numbers in one snapshot
+    std::vector<bool> gives(static_cast<std::size_t>(std::max(sensors, 0)), false);
+    for (int t = 0; t < snapshots(); ++t) {
+      int count = 0;
+      for (int m = 0; m < sensors; ++m) {
+        if (!is_finite(t, m)) continue;
+        gives[static_cast<std::size_t>(m)] = true;
+        ++count;
+      }
+      most = std::max(most, count);
+    }
+    return most > 0 && most == std::count(gives.begin(), gives.end(), true);
   }
 };
 

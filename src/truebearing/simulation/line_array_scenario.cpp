@@ -246,6 +246,9 @@ std::unique_ptr<Scenario> read_line_array_scenario(TableReader& table) {
     for (TableReader& target : table.tables("targets")) {
       p.targets.push_back({read_angle_path(target), target.number_or("appears_s", -kInfinity),
                            target.number_or("vanishes_s", kInfinity)});
+      for (int k = -1; k < p.intervals; ++k)
+        if (std::abs(p.targets.back().path.angle_rad(time_of(p, k))) >= radians(90.0))
+          throw target.error("start_deg", "begins a path that passes 90 deg", "a path in front of the array");
       target.finish();
     }
     if (p.targets.empty()) throw table.error("targets", "is missing or empty", "[[targets]] or [random]");

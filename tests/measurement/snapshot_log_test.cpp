@@ -207,7 +207,7 @@ TEST_F(SnapshotLogTest, ValuesThatAreNotFiniteAreMissing) {
   ForeignLog log;
   log.snapshots().values[0] = kInfinity;
   log.snapshots().values[9] = kNaN;
-  log.snapshots().values[13] = kNaN;
+  log.snapshots().values[15] = kNaN;
   const Recording recording = read(log);
   EXPECT_TRUE(std::isnan(recording.measurements[0].snapshots->values[0].real()));
   EXPECT_FALSE(recording.measurements[0].snapshots->is_finite(0));

@@ -346,7 +346,7 @@ TEST(LineArrayScenario, TheOnesThatComeWithTheToolkitLoadAndRun) {
     if (entry.path().filename().string().rfind("array_", 0) != 0) continue;
     ++found;
     const Recording recording = load_scenario(entry.path())->simulate({1, Role::evaluation, 0});
-    EXPECT_EQ(recording.truth.size(), 5u) << entry.path();
+    EXPECT_GE(recording.truth.size(), 5u) << entry.path();
     EXPECT_EQ(recording.measurements[0].snapshots->sensors, 15) << entry.path();
     EXPECT_EQ(recording.measurements[0].snapshots->spacing_wavelengths, 0.5) << entry.path();
   }

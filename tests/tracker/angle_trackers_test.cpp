@@ -152,6 +152,7 @@ TEST(AngleTrackers, RepeatedAndLateBlocksAreRejectedAndLeaveNoTrace) {
         ASSERT_EQ(records.size(), 3u) << kind.name;
         for (std::size_t n = 0; n < 3; ++n) {
           EXPECT_EQ(records[n].status, StepStatus::rejected) << kind.name;
+          EXPECT_FALSE(records[n].innovation || records[n].gain) << kind.name;
           EXPECT_EQ(records[n].x, plain[n].x) << kind.name;
           EXPECT_EQ(records[n].P, plain[n].P) << kind.name;
         }

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "truebearing/array/direction_finding.hpp"
-#include "truebearing/tracker/angle_neighbours.hpp"
+#include "truebearing/tracker/angle_records.hpp"
 #include "truebearing/tracker/snapshot_guard.hpp"
 
 namespace truebearing {
@@ -61,7 +61,7 @@ void JointAngleTracker::reset() {
 std::span<const StepRecord> JointAngleTracker::step(const Measurement& measurement) {
   const StreamGuard::Verdict verdict = examine_snapshots(guard_, measurement, interval_);
   if (verdict == StreamGuard::Verdict::repeated || verdict == StreamGuard::Verdict::out_of_order) {
-    for (StepRecord& record : records_) record.status = StepStatus::rejected;
+    refuse(records_);
     return {records_.data(), started_ ? tracks_.size() : 0};
   }
   if (verdict == StreamGuard::Verdict::missing) {

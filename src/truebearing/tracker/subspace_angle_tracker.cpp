@@ -5,7 +5,7 @@
 
 #include "truebearing/array/direction_finding.hpp"
 #include "truebearing/measurement/lagged_angle.hpp"
-#include "truebearing/tracker/angle_neighbours.hpp"
+#include "truebearing/tracker/angle_records.hpp"
 #include "truebearing/tracker/snapshot_guard.hpp"
 #include "truebearing/tracker/start.hpp"
 
@@ -32,7 +32,7 @@ void SubspaceAngleTracker::reset() {
 std::span<const StepRecord> SubspaceAngleTracker::step(const Measurement& measurement) {
   const StreamGuard::Verdict verdict = examine_snapshots(guard_, measurement, interval_);
   if (verdict == StreamGuard::Verdict::repeated || verdict == StreamGuard::Verdict::out_of_order) {
-    for (StepRecord& record : records_) record.status = StepStatus::rejected;
+    refuse(records_);
     return records_;
   }
   bool usable = verdict == StreamGuard::Verdict::usable;

@@ -1,4 +1,4 @@
-// Fills the records of a tracker of angles with each one's nearest neighbour.
+// What trackers of several targets' angles do with their records alike.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,18 @@
 
 namespace truebearing {
 
-/// records: of one step, states [angle, rate]. difference_variance(i, j): that of the difference of two angles.
+/// Of a measurement that was not looked at: the states of the step before stand.
+inline void refuse(std::span<StepRecord> records) {
+  for (StepRecord& record : records) {
+    record.status = StepStatus::rejected;
+    record.prediction.reset();
+    record.innovation.reset();
+    record.gain.reset();
+  }
+}
+
+/// Fills in each record's nearest neighbour. records: of one step, states [angle, rate]. difference_variance(i, j):
+/// that of the difference of two angles.
 template <typename Variance>
 void find_neighbours(const LineArray& array, std::span<StepRecord> records, const Variance& difference_variance) {
   for (std::size_t i = 0; i < records.size(); ++i) {

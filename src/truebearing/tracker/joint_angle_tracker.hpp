@@ -1,7 +1,7 @@
 // The joint filter of all targets' angles (array/joint_angle_filter.hpp) with its hypotheses as a Tracker: one record
 // per target. It begins with the first usable interval: angles from its covariance, rates unknown. Where targets may
-// appear and vanish, a signal that the others do not explain begins a track when it is heard again, and a track whose
-// signal is not heard any more ends.
+// appear and vanish, a signal that the others do not explain begins a track, at once or when it is heard again, and a
+// track whose signal is not heard any more ends.
 //
 // The innovation in the records is the equivalent one: that of a measurement of the angle by itself which would have
 // changed estimate and variance as the whole interval did.

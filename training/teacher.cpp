@@ -34,7 +34,7 @@ class RowMaker {
  public:
   RowMaker(const Ensemble& ensemble, const CorrectionSpec& correction, const StateSpace& truth_space,
            std::vector<int> truth_index)
-      : ensemble_(ensemble.clone()),
+      : ensemble_(ensemble.fresh()),
         from_step_(correction.training.from_step),
         every_s_(correction.training.every_s),
         base_(ensemble_.index(correction.base)),

@@ -66,14 +66,14 @@ class TuningRuns {
 
   TrackerSummary score(const Tracker& tracker) const {
     Ensemble ensemble;
-    ensemble.add("tuned", tracker.clone());
+    ensemble.add("tuned", tracker.fresh());
     TrackerSet prototype(std::move(ensemble));
     prototype.show_member("tuned");
     const std::vector<Scorer> scorers{Scorer(study_.scenario().truth_space(), tracker.space())};
     std::vector<std::vector<RunScore>> scores(recordings_.size());
     std::vector<std::optional<TrackerSet>> sets(worker_count(threads_));
     monte_carlo(recordings_.size(), threads_, [&](std::size_t run, std::size_t worker) {
-      if (!sets[worker]) sets[worker].emplace(prototype.clone());
+      if (!sets[worker]) sets[worker].emplace(prototype.fresh());
       scores[run] = score_recording(*sets[worker], scorers, recordings_[run], study_.scoring());
     });
     std::vector<const RunScore*> all;

@@ -28,7 +28,7 @@ class AlphaBetaTracker final : public truebearing::Tracker {
 
   std::span<const truebearing::StepRecord> step(const truebearing::Measurement& measurement) override;
   void reset() override;
-  std::unique_ptr<truebearing::Tracker> clone() const override { return std::make_unique<AlphaBetaTracker>(options_); }
+  std::unique_ptr<truebearing::Tracker> fresh() const override { return std::make_unique<AlphaBetaTracker>(options_); }
   const truebearing::StateSpace& space() const override { return truebearing::line_space(); }
   truebearing::RecordBlocks blocks() const override { return {.prediction = true, .innovation = true, .gain = true}; }
   truebearing::TrackerCounts counts() const override { return guard_.counts; }

@@ -9,8 +9,8 @@
 #include "app/subcommands.hpp"
 #include "truebearing/core/error.hpp"
 #include "truebearing/io/file.hpp"
-#include "truebearing/measurement/recording_csv.hpp"
-#include "truebearing/measurement/snapshot_log.hpp"
+#include "truebearing/recording/recording_csv.hpp"
+#include "truebearing/recording/snapshot_log.hpp"
 #include "truebearing/simulation/bearings_of_track.hpp"
 
 namespace truebearing {

@@ -11,7 +11,7 @@
 #include "app/tma_answer.hpp"
 #include "truebearing/core/angle.hpp"
 #include "truebearing/core/error.hpp"
-#include "truebearing/measurement/recording_csv.hpp"
+#include "truebearing/recording/recording_csv.hpp"
 #include "truebearing/tma/target_motion_batch.hpp"
 #include "truebearing/tma/cho_2015.hpp"
 #include "truebearing/tma/frequency_changes.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "tests/support/real_data.hpp"
-#include "truebearing/measurement/recording_csv.hpp"
+#include "truebearing/recording/recording_csv.hpp"
 #include "truebearing/simulation/recorded_scenario.hpp"
 #include "truebearing/study/study.hpp"
 

@@ -8,8 +8,8 @@
 #include "tests/app/program.hpp"
 #include "tests/support/array_recording.hpp"
 #include "tests/support/flight_study.hpp"
-#include "truebearing/measurement/recording_csv.hpp"
-#include "truebearing/measurement/snapshot_log.hpp"
+#include "truebearing/recording/recording_csv.hpp"
+#include "truebearing/recording/snapshot_log.hpp"
 #include "truebearing/tracker/step_log.hpp"
 
 namespace truebearing {
@@ -183,7 +183,8 @@ TEST(Program, SimulatesBearingsOfARecordedTrack) {
   std::string positions = "time_s,vessel,latitude_deg,longitude_deg\n";
   for (int k = 0; k < 30; ++k)
     for (int vessel = 1; vessel <= 2; ++vessel)
-      positions += std::to_string(10 * k) + "," + std::to_string(vessel) + "," + std::to_string(50.0 + 5e-4 * k * vessel) + ",-1.0\n";
+      positions += std::to_string(10 * k) + "," + std::to_string(vessel) + "," +
+                   std::to_string(50.0 + 5e-4 * k * vessel) + ",-1.0\n";
   folder.write("ais.csv", positions);
   const std::string scenario = std::string(TRUEBEARING_SOURCE_DIR) + "/data/scenarios/bearings_of_a_vessel.toml";
   const Outcome simulated =

@@ -7,7 +7,7 @@
 #include "tests/app/program.hpp"
 #include "tests/support/bearing_frequency_runs.hpp"
 #include "tests/support/bearing_runs.hpp"
-#include "truebearing/measurement/recording_csv.hpp"
+#include "truebearing/recording/recording_csv.hpp"
 
 namespace truebearing {
 namespace {

@@ -128,7 +128,7 @@ class WastefulTracker final : public Tracker {
     return {&record_, 1};
   }
   void reset() override {}
-  std::unique_ptr<Tracker> clone() const override { return std::make_unique<WastefulTracker>(); }
+  std::unique_ptr<Tracker> fresh() const override { return std::make_unique<WastefulTracker>(); }
   const StateSpace& space() const override { return line_space(); }
 
  private:

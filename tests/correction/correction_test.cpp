@@ -38,7 +38,7 @@ class ScriptedTracker final : public Tracker {
   }
   std::span<const StepRecord> step(const Measurement&) override { return {&record, shown ? 1u : 0u}; }
   void reset() override {}
-  std::unique_ptr<Tracker> clone() const override { return std::make_unique<ScriptedTracker>(*this); }
+  std::unique_ptr<Tracker> fresh() const override { return std::make_unique<ScriptedTracker>(*this); }
   const StateSpace& space() const override { return line_space(); }
   RecordBlocks blocks() const override { return blocks_; }
   std::span<const TrackEvent> events() const override { return noticed; }
@@ -373,7 +373,7 @@ TEST(Correction, NoticesWhatItsBaseDoes) {
 
 TEST(Correction, MissingMeasurementLeavesNoTrace) {
   CorrectedTracker tracker(radar_ensemble(), shared(radar_model(3)));
-  const auto clean = tracker.clone();
+  const auto clean = tracker.fresh();
   for (const Measurement& measurement : radar_log(3, 150)) {
     const int k = static_cast<int>(measurement.time_s);
     if (k % 4 == 2) {
@@ -403,7 +403,7 @@ TEST(Correction, BaseInTheRecordStaysWhatItWas) {
 TEST(Correction, ResetAndCloneBeginAnew) {
   CorrectedTracker tracker(radar_ensemble(), shared(radar_model(4)));
   for (const Measurement& measurement : radar_log(4, 100)) tracker.step(measurement);
-  const auto copy = tracker.clone();
+  const auto copy = tracker.fresh();
   tracker.reset();
   CorrectedTracker fresh(radar_ensemble(), shared(radar_model(4)));
   for (const Measurement& measurement : radar_log(5, 50)) {

@@ -83,7 +83,7 @@ class Reporter final : public Tracker {
     return {&record_, 1};
   }
   void reset() override { events_.clear(); }
-  std::unique_ptr<Tracker> clone() const override { return std::make_unique<Reporter>(reports_); }
+  std::unique_ptr<Tracker> fresh() const override { return std::make_unique<Reporter>(reports_); }
   const StateSpace& space() const override { return plane_space(); }
   std::span<const TrackEvent> events() const override { return events_; }
 

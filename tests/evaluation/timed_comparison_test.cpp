@@ -50,7 +50,7 @@ class FixedTracker final : public Tracker {
     return {&record_, 1};
   }
   void reset() override {}
-  std::unique_ptr<Tracker> clone() const override { return std::make_unique<FixedTracker>(factor_, cost_); }
+  std::unique_ptr<Tracker> fresh() const override { return std::make_unique<FixedTracker>(factor_, cost_); }
   const StateSpace& space() const override { return plane_space(); }
 
  private:

@@ -11,7 +11,7 @@
 #include "tests/support/error_message.hpp"
 #include "tests/support/statistics.hpp"
 #include "truebearing/core/angle.hpp"
-#include "truebearing/measurement/recording_csv.hpp"
+#include "truebearing/recording/recording_csv.hpp"
 
 namespace truebearing {
 namespace {

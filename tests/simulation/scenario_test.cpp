@@ -10,7 +10,7 @@
 
 #include "tests/support/error_message.hpp"
 #include "tests/support/statistics.hpp"
-#include "truebearing/measurement/recording_csv.hpp"
+#include "truebearing/recording/recording_csv.hpp"
 
 namespace truebearing {
 namespace {

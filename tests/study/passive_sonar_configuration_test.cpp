@@ -89,7 +89,8 @@ const std::string kSonar = "hand_over_s = 400.0\n" + kFrequencies;
 
 TEST(PassiveSonar, PassesItsSensorOnToBothParts) {
   const Recording recording = frequency_run(3);
-  const auto tracker = make(kSonar + "[batch]\nsolve_every_s = 100.0\n[filter]\nkind = \"imm\"\n" + kModes, "passive_sonar");
+  const auto tracker =
+      make(kSonar + "[batch]\nsolve_every_s = 100.0\n[filter]\nkind = \"imm\"\n" + kModes, "passive_sonar");
   EXPECT_EQ(&tracker->space(), &plane_frequency_space());
   EXPECT_TRUE(tracker->blocks().mode_probabilities);
   EXPECT_LT(last_error_m(*tracker, recording), 400.0);
@@ -99,17 +100,18 @@ TEST(PassiveSonar, PassesItsSensorOnToBothParts) {
 }
 
 TEST(PassiveSonar, WorksOnBearingsAlone) {
-  const auto tracker = make("hand_over_s = 500.0\n" + kBearings +
-                                "[batch]\nsolve_every_s = 50.0\n[filter]\nkind = \"unscented\"\n" + kSteady,
-                            "passive_sonar");
+  const auto tracker = make(
+      "hand_over_s = 500.0\n" + kBearings + "[batch]\nsolve_every_s = 50.0\n[filter]\nkind = \"unscented\"\n" + kSteady,
+      "passive_sonar");
   EXPECT_LT(last_error_m(*tracker, bearings_run(4)), 4000.0);
 }
 
 TEST(PassiveSonar, ClonesGoTheirOwnWay) {
   const Recording recording = frequency_run(5);
-  const auto tracker = make(kSonar + "[batch]\nsolve_every_s = 100.0\n[filter]\nkind = \"imm\"\n" + kModes, "passive_sonar");
+  const auto tracker =
+      make(kSonar + "[batch]\nsolve_every_s = 100.0\n[filter]\nkind = \"imm\"\n" + kModes, "passive_sonar");
   const double once = last_error_m(*tracker, recording);
-  EXPECT_EQ(last_error_m(*tracker->clone(), recording), once);
+  EXPECT_EQ(last_error_m(*tracker->fresh(), recording), once);
   tracker->reset();
   EXPECT_EQ(last_error_m(*tracker, recording), once);
 }

@@ -10,7 +10,7 @@
 #include "tests/support/flight_study.hpp"
 #include "tests/support/radar_study.hpp"
 #include "tests/support/temporary_folder.hpp"
-#include "truebearing/measurement/snapshot_log.hpp"
+#include "truebearing/recording/snapshot_log.hpp"
 #include "truebearing/study/study.hpp"
 
 namespace truebearing {

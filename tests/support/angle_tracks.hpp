@@ -70,7 +70,7 @@ class ToldTracker final : public Tracker {
     return records_;
   }
   void reset() override { step_ = 0; }
-  std::unique_ptr<Tracker> clone() const override { return std::make_unique<ToldTracker>(angles_deg_); }
+  std::unique_ptr<Tracker> fresh() const override { return std::make_unique<ToldTracker>(angles_deg_); }
   const StateSpace& space() const override { return angle_space(); }
   RecordBlocks blocks() const override { return {.innovation = true}; }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "truebearing/core/random.hpp"
-#include "truebearing/measurement/recording.hpp"
+#include "truebearing/recording/recording.hpp"
 
 namespace truebearing::testing {
 

@@ -273,14 +273,14 @@ TEST(AngleTrackers, ResetAndCloneAreAsNew) {
     const Published expected = track(*fresh, second.measurements);
     track(*used, first.measurements);
     used->step(first.measurements.front());  // out of order
-    const auto clone = used->clone();
+    const auto fresh = used->fresh();
     used->reset();
     EXPECT_EQ(used->counts().out_of_order, 0) << kind.name;
     EXPECT_TRUE(used->events().empty()) << kind.name;
-    const Published after_reset = track(*used, second.measurements), of_clone = track(*clone, second.measurements);
+    const Published after_reset = track(*used, second.measurements), of_fresh = track(*fresh, second.measurements);
     for (std::size_t k = 0; k < expected.size(); ++k) {
       expect_same(after_reset[k], expected[k], kind.name);
-      expect_same(of_clone[k], expected[k], kind.name);
+      expect_same(of_fresh[k], expected[k], kind.name);
     }
     EXPECT_EQ(&used->space(), &angle_space());
   }

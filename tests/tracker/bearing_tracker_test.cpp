@@ -84,7 +84,7 @@ template <typename Make>
 void expect_it_begins_anew(const Make& make) {
   const auto tracker = make(), fresh = make();
   for (const Measurement& measurement : bearings_run(5).measurements) tracker->step(measurement);
-  const auto copy = tracker->clone();
+  const auto copy = tracker->fresh();
   tracker->reset();
   for (const Measurement& measurement : bearings_run(6).measurements) {
     const StepRecord record = fresh->step(measurement)[0];

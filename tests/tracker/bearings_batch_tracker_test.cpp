@@ -163,10 +163,10 @@ TEST(BearingsBatchTracker, CloneAndResetStartAfresh) {
     return x;
   };
   const BoundedVector first = last(tracker);
-  const auto clone = tracker.clone();
+  const auto another = tracker.fresh();
   tracker.reset();
   EXPECT_EQ(last(tracker), first);
-  EXPECT_EQ(last(*clone), first);
+  EXPECT_EQ(last(*another), first);
 }
 
 // z = [bearing, frequency] of Kim and Song's scenario.

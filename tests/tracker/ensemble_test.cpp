@@ -29,7 +29,7 @@ class TwoTracks final : public Tracker {
     records_.assign(2, StepRecord{});
     records_[swapped_ ? 0 : 1].track = 1;
   }
-  std::unique_ptr<Tracker> clone() const override { return std::make_unique<TwoTracks>(swapped_); }
+  std::unique_ptr<Tracker> fresh() const override { return std::make_unique<TwoTracks>(swapped_); }
   const StateSpace& space() const override { return line_space(); }
 
  private:
@@ -87,7 +87,7 @@ TEST(Ensemble, CloneBeginsAnewAndIsIndependent) {
   Ensemble ensemble;
   ensemble.add("plain", RadarFilter{}.tracker());
   for (const Measurement& measurement : testing::radar_log(2, 30)) ensemble.step(measurement);
-  Ensemble copy = ensemble.clone();
+  Ensemble copy = ensemble.fresh();
   EXPECT_EQ(copy.name(0), "plain");
   EXPECT_TRUE(copy.records(0).empty());
   const BoundedVector before = ensemble.record(0, 0)->x;

@@ -129,7 +129,7 @@ TEST(FilterBank, MissingMeasurementLeavesNoTrace) {
   RadarFilter fast;
   fast.x0 = {0.0, 300.0};
   Bank bank(line_space(), {hypothesis(RadarFilter{}), hypothesis(fast)});
-  const auto clean = bank.clone();
+  const auto clean = bank.fresh();
   int missing = 0;
   for (const Measurement& measurement : radar_log(9, 60)) {
     if (static_cast<int>(measurement.time_s) % 3 == 0) {

@@ -91,7 +91,7 @@ void expect_no_trace_of_missing(const Noise& noise, const FilterTrackerOptions& 
   FilterTracker<KalmanFilter<2>, Motion, PositionSensor<1>> tracker(
       line_space(), Motion{noise}, RadarFilter{}.sensor(),
       PriorStart<2>{{0.0, 0.0}, Eigen::Vector2d(1e6, 5e4).asDiagonal()}, options);
-  const auto clean = tracker.clone();
+  const auto clean = tracker.fresh();
   RandomStream random({}, StreamId::test);
   int missing = 0;
   for (const Measurement& measurement : radar_log(3, 200)) {
@@ -354,7 +354,7 @@ TEST(FilterTracker, ResetAndCloneBeginAnew) {
   last_record(*tracker, radar_log(5, 50));
   tracker->step(position(90.0, kNaN));
   tracker->step(position(91.0, 1e7));
-  const auto copy = tracker->clone();
+  const auto copy = tracker->fresh();
   tracker->reset();
   const auto fresh = radar.tracker();
   for (const Measurement& measurement : radar_log(6, 50)) {

@@ -33,7 +33,7 @@ class Oracle final : public Tracker {
     return {&record_, 1};
   }
   void reset() override { next_ = 0; }
-  std::unique_ptr<Tracker> clone() const override { return std::make_unique<Oracle>(recording_, known_s_); }
+  std::unique_ptr<Tracker> fresh() const override { return std::make_unique<Oracle>(recording_, known_s_); }
   const StateSpace& space() const override { return plane_frequency_space(); }
 
  private:
@@ -170,7 +170,7 @@ TEST(PassiveSonarTracker, SaysWhenTheTargetTurns) {
 TEST(PassiveSonarTracker, BeginsAnewAfterAReset) {
   const Recording first = frequency_run(5, 100, 10.0, 480.0);
   PassiveSonarTracker tracker = sonar(first);
-  const std::unique_ptr<Tracker> other = tracker.clone();
+  const std::unique_ptr<Tracker> other = tracker.fresh();
   const double once = last_frequency_error_hz(tracker, first);
   tracker.reset();
   EXPECT_TRUE(tracker.events().empty());

@@ -43,7 +43,7 @@ TEST(RawTracker, WithoutAUsableMeasurementThereIsNoRecord) {
   EXPECT_EQ(tracker.counts().out_of_order, 1);
   tracker.reset();
   EXPECT_EQ(tracker.counts().missing, 0);
-  EXPECT_FALSE(tracker.clone()->step(position(0.0, 1.0)).empty());
+  EXPECT_FALSE(tracker.fresh()->step(position(0.0, 1.0)).empty());
 }
 
 TEST(RawTracker, PromisesNoBlocks) {

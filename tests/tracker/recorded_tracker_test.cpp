@@ -68,7 +68,7 @@ TEST(RecordedTracker, RecordsAreThoseOfTheMeasurementsTime) {
 TEST(RecordedTracker, ResetAndCloneBeginAnew) {
   RecordedTracker recorded = replay(kForeign);
   recorded.step(position(4.0, 0.0));
-  const auto copy = recorded.clone();
+  const auto copy = recorded.fresh();
   EXPECT_EQ(copy->step(position(1.0, 0.0))[0].x[0], 10.0);
   EXPECT_TRUE(recorded.step(position(1.0, 0.0)).empty());
   recorded.reset();
@@ -87,7 +87,7 @@ TEST(RecordedTracker, WithoutALogItReplaysWhatMeasurementsCarry) {
   EXPECT_TRUE(recorded.step(measurement).empty());
   measurement.recorded = &record;
   ASSERT_EQ(recorded.step(measurement).size(), 1u);
-  EXPECT_EQ(recorded.clone()->step(measurement)[0].x[1], 4.0);
+  EXPECT_EQ(recorded.fresh()->step(measurement)[0].x[1], 4.0);
   record.space = &plane_space();
   EXPECT_TRUE(recorded.step(measurement).empty()) << "of another space";
 }

@@ -25,8 +25,8 @@ class CorrectedTracker final : public Tracker {
     correction_.reset();
   }
 
-  std::unique_ptr<Tracker> clone() const override {
-    return std::make_unique<CorrectedTracker>(ensemble_.clone(), model_);
+  std::unique_ptr<Tracker> fresh() const override {
+    return std::make_unique<CorrectedTracker>(ensemble_.fresh(), model_);
   }
   const StateSpace& space() const override { return *model_->space; }
   RecordBlocks blocks() const override { return ensemble_.tracker(ensemble_.index(model_->base)).blocks(); }

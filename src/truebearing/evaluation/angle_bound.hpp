@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "truebearing/core/angle.hpp"
-#include "truebearing/measurement/recording.hpp"
+#include "truebearing/recording/recording.hpp"
 
 namespace truebearing {
 

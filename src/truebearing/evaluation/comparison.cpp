@@ -29,11 +29,11 @@ SetScores run_set(const TrackerSet& trackers, const std::vector<Scorer>& scorers
   set.runs.resize(options.runs);
   if (options.cramer_rao) set.bound.resize(options.runs);
   if (options.angle_bound) set.angle_bound.resize(options.runs);
-  std::vector<std::optional<TrackerSet>> clones(worker_count(options.threads));
+  std::vector<std::optional<TrackerSet>> copies(worker_count(options.threads));
   const auto run_one = [&](std::size_t run, std::size_t worker) {
-    if (!clones[worker]) clones[worker].emplace(trackers.clone());
+    if (!copies[worker]) copies[worker].emplace(trackers.fresh());
     const Recording recording = scenario.simulate({options.seed, options.role, run});
-    set.runs[run] = score_recording(*clones[worker], scorers, recording, options.scoring);
+    set.runs[run] = score_recording(*copies[worker], scorers, recording, options.scoring);
     if (options.cramer_rao)
       set.bound[run] = options.cramer_rao->variances(recording, steps_at(recording, options.scoring.times_s));
     if (options.angle_bound)

@@ -11,7 +11,7 @@
 #include "truebearing/evaluation/time_score.hpp"
 #include "truebearing/evaluation/track_outcome.hpp"
 #include "truebearing/evaluation/tracker_set.hpp"
-#include "truebearing/measurement/recording.hpp"
+#include "truebearing/recording/recording.hpp"
 
 namespace truebearing {
 
@@ -36,7 +36,7 @@ struct RunScore {
   double gate_sum = 0.0;               ///< sum of the gate's weight over them
   std::vector<TimeScore> at_times;     ///< [time] of ScoringRule::times_s
   std::vector<TrackEvent> events;      ///< that the tracker reported by the end of the run
-  std::optional<double> turns_at_s;    ///< of the truth (measurement/recording.hpp), where there is one target
+  std::optional<double> turns_at_s;    ///< of the truth (recording/recording.hpp), where there is one target
   std::optional<TrackOutcome> tracks;  ///< where ScoringRule::tracks asks for it
   std::optional<GospaSum> gospa;       ///< where ScoringRule::gospa asks for it
 

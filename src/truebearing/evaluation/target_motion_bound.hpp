@@ -10,7 +10,7 @@
 
 #include "truebearing/evaluation/target_motion.hpp"
 #include "truebearing/measurement/bearing_frequency.hpp"
-#include "truebearing/measurement/recording.hpp"
+#include "truebearing/recording/recording.hpp"
 #include "truebearing/tma/range_prior.hpp"
 
 namespace truebearing {

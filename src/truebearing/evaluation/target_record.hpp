@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <span>
 
-#include "truebearing/measurement/recording.hpp"
+#include "truebearing/recording/recording.hpp"
 #include "truebearing/tracker/step_record.hpp"
 
 namespace truebearing {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "truebearing/evaluation/target_motion.hpp"
-#include "truebearing/measurement/recording.hpp"
+#include "truebearing/recording/recording.hpp"
 #include "truebearing/tracker/step_record.hpp"
 
 namespace truebearing {

@@ -43,8 +43,8 @@ void TrackerSet::reset() {
   for (Entry& entry : entries_) entry.records = {};
 }
 
-TrackerSet TrackerSet::clone() const {
-  TrackerSet copy(ensemble_.clone());
+TrackerSet TrackerSet::fresh() const {
+  TrackerSet copy(ensemble_.fresh());
   copy.corrections_ = corrections_;
   copy.entries_ = entries_;
   copy.reset();

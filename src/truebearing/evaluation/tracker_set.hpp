@@ -31,7 +31,7 @@ class TrackerSet {
   std::span<const TrackEvent> events(int entry) const;
 
   void reset();
-  TrackerSet clone() const;
+  TrackerSet fresh() const;
 
  private:
   struct Entry {

@@ -7,8 +7,8 @@
 
 #include "truebearing/core/angle.hpp"
 #include "truebearing/core/error.hpp"
-#include "truebearing/measurement/geographic_track.hpp"
-#include "truebearing/measurement/recording_csv.hpp"
+#include "truebearing/recording/geographic_track.hpp"
+#include "truebearing/recording/recording_csv.hpp"
 
 namespace truebearing {
 

@@ -27,7 +27,7 @@ class BearingsOfTrack final : public Scenario {
 };
 
 /// A track from positions on the globe, of the vessel of that number where there are several
-/// (measurement/geographic_track.hpp), or from a log with its truth. Throws InputError.
+/// (recording/geographic_track.hpp), or from a log with its truth. Throws InputError.
 Recording read_target_track(const std::filesystem::path& path, std::optional<int> number);
 
 }  // namespace truebearing

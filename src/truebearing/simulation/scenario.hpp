@@ -11,7 +11,7 @@
 #include "truebearing/core/random.hpp"
 #include "truebearing/core/state_space.hpp"
 #include "truebearing/io/table_reader.hpp"
-#include "truebearing/measurement/recording.hpp"
+#include "truebearing/recording/recording.hpp"
 
 namespace truebearing {
 

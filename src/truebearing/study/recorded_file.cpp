@@ -6,8 +6,8 @@
 
 #include "truebearing/core/angle.hpp"
 #include "truebearing/core/error.hpp"
-#include "truebearing/measurement/recording_csv.hpp"
-#include "truebearing/measurement/snapshot_log.hpp"
+#include "truebearing/recording/recording_csv.hpp"
+#include "truebearing/recording/snapshot_log.hpp"
 
 namespace truebearing {
 namespace {

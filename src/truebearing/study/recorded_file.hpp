@@ -1,5 +1,5 @@
 // A recorded track that a study is compared on: a measurement log with truth, a line array's snapshot log with truth,
-// which every run replays, or positions on the globe (measurement/geographic_track.hpp), which every run measures
+// which every run replays, or positions on the globe (recording/geographic_track.hpp), which every run measures
 // afresh as the study's table [recorded] says:
 //   position_sigma_m                             of a sensor that measures the position per axis; or
 //   range_sigma_m, bearing_sigma_deg, site       of one that stands `site` = [East, North] m from the track's middle
@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "truebearing/io/table_reader.hpp"
-#include "truebearing/measurement/geographic_track.hpp"
+#include "truebearing/recording/geographic_track.hpp"
 #include "truebearing/simulation/recorded_scenario.hpp"
 
 namespace truebearing {

@@ -51,7 +51,7 @@ class BearingsBatchTracker final : public Tracker {
 
   std::span<const StepRecord> step(const Measurement& measurement) override;
   void reset() override;
-  std::unique_ptr<Tracker> clone() const override { return std::make_unique<BearingsBatchTracker>(options_); }
+  std::unique_ptr<Tracker> fresh() const override { return std::make_unique<BearingsBatchTracker>(options_); }
   const StateSpace& space() const override { return options_.frequency ? plane_frequency_space() : plane_space(); }
   TrackerCounts counts() const override { return guard_.counts; }
 

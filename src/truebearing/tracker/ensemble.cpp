@@ -29,9 +29,9 @@ void Ensemble::reset() {
   }
 }
 
-Ensemble Ensemble::clone() const {
+Ensemble Ensemble::fresh() const {
   Ensemble copy;
-  for (const Member& member : members_) copy.add(member.name, member.tracker->clone());
+  for (const Member& member : members_) copy.add(member.name, member.tracker->fresh());
   return copy;
 }
 

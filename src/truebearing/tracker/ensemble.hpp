@@ -28,7 +28,7 @@ class Ensemble {
   /// Steps every member on the measurement.
   void step(const Measurement& measurement);
   void reset();
-  Ensemble clone() const;
+  Ensemble fresh() const;
 
   /// The records of the last step. Valid until the next step.
   std::span<const StepRecord> records(int member) const { return at(member).records; }

@@ -83,7 +83,7 @@ class FilterBank final : public Tracker {
     if (!suppose_) begin();
   }
 
-  std::unique_ptr<Tracker> clone() const override {
+  std::unique_ptr<Tracker> fresh() const override {
     if (suppose_) return std::make_unique<FilterBank>(*space_, hypotheses_, suppose_);
     return std::make_unique<FilterBank>(*space_, hypotheses_, start_time_s_);
   }

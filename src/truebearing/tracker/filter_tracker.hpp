@@ -105,7 +105,7 @@ class FilterTracker final : public Successor {
     filter_time_s_ = time_s;
   }
 
-  std::unique_ptr<Tracker> clone() const override {
+  std::unique_ptr<Tracker> fresh() const override {
     return std::make_unique<FilterTracker>(*space_, motion_, sensor_, start_, options_);
   }
 

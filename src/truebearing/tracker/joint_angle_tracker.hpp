@@ -48,7 +48,7 @@ class JointAngleTracker final : public Tracker {
 
   std::span<const StepRecord> step(const Measurement& measurement) override;
   void reset() override;
-  std::unique_ptr<Tracker> clone() const override { return std::make_unique<JointAngleTracker>(options_); }
+  std::unique_ptr<Tracker> fresh() const override { return std::make_unique<JointAngleTracker>(options_); }
   const StateSpace& space() const override { return angle_space(); }
   RecordBlocks blocks() const override {
     return {.prediction = true, .innovation = true, .gain = true, .neighbour = true};

@@ -37,9 +37,9 @@ void PassiveSonarTracker::reset() {
   doubtful_.reset();
 }
 
-std::unique_ptr<Tracker> PassiveSonarTracker::clone() const {
-  std::unique_ptr<Tracker> filter = filter_->clone();
-  return std::make_unique<PassiveSonarTracker>(options_, batch_->clone(),
+std::unique_ptr<Tracker> PassiveSonarTracker::fresh() const {
+  std::unique_ptr<Tracker> filter = filter_->fresh();
+  return std::make_unique<PassiveSonarTracker>(options_, batch_->fresh(),
                                                std::unique_ptr<Successor>(dynamic_cast<Successor*>(filter.release())));
 }
 

@@ -38,7 +38,7 @@ class PassiveSonarTracker final : public Tracker {
 
   std::span<const StepRecord> step(const Measurement& measurement) override;
   void reset() override;
-  std::unique_ptr<Tracker> clone() const override;
+  std::unique_ptr<Tracker> fresh() const override;
   const StateSpace& space() const override { return filter_->space(); }
   RecordBlocks blocks() const override { return filter_->blocks(); }
   TrackerCounts counts() const override { return following_ ? sum_of_counts() : batch_->counts(); }

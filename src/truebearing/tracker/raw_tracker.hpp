@@ -28,7 +28,7 @@ class RawTracker final : public Tracker {
     record_.space = space_;
   }
 
-  std::unique_ptr<Tracker> clone() const override { return std::make_unique<RawTracker>(*space_, sigma_); }
+  std::unique_ptr<Tracker> fresh() const override { return std::make_unique<RawTracker>(*space_, sigma_); }
   const StateSpace& space() const override { return *space_; }
   TrackerCounts counts() const override { return guard_.counts; }
 

@@ -24,7 +24,7 @@ std::span<const StepRecord> RecordedTracker::step(const Measurement& measurement
   return {records.data() + first, next_ - first};
 }
 
-std::unique_ptr<Tracker> RecordedTracker::clone() const {
+std::unique_ptr<Tracker> RecordedTracker::fresh() const {
   auto copy = std::make_unique<RecordedTracker>(*this);
   copy->reset();
   return copy;

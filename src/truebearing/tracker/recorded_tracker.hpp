@@ -23,7 +23,7 @@ class RecordedTracker final : public Tracker {
   /// measurement's own record; none where it carries none of this space.
   std::span<const StepRecord> step(const Measurement& measurement) override;
   void reset() override { next_ = 0; }
-  std::unique_ptr<Tracker> clone() const override;
+  std::unique_ptr<Tracker> fresh() const override;
   const StateSpace& space() const override { return *space_; }
   /// In the plane z_1 and z_2 of a step log are the measured position.
   RecordBlocks blocks() const override {

@@ -8,7 +8,7 @@
 
 #include "truebearing/core/error.hpp"
 #include "truebearing/core/suggestion.hpp"
-#include "truebearing/measurement/velocity_truth.hpp"
+#include "truebearing/recording/velocity_truth.hpp"
 
 namespace truebearing {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "truebearing/measurement/recording.hpp"
+#include "truebearing/recording/recording.hpp"
 #include "truebearing/tracker/step_log.hpp"
 
 namespace truebearing {

@@ -78,7 +78,7 @@ class Tracker {
   virtual void reset() = 0;
 
   /// An independent tracker in the state after construction.
-  virtual std::unique_ptr<Tracker> clone() const = 0;
+  virtual std::unique_ptr<Tracker> fresh() const = 0;
 
   /// The space of the records' states.
   virtual const StateSpace& space() const = 0;

@@ -15,7 +15,7 @@
 
 #include <filesystem>
 
-#include "truebearing/measurement/recording.hpp"
+#include "truebearing/recording/recording.hpp"
 
 namespace truebearing {
 

@@ -1,4 +1,4 @@
-#include "truebearing/measurement/recording_csv.hpp"
+#include "truebearing/recording/recording_csv.hpp"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 #include "truebearing/core/angle.hpp"
 #include "truebearing/core/error.hpp"
 #include "truebearing/io/csv.hpp"
-#include "truebearing/measurement/velocity_truth.hpp"
+#include "truebearing/recording/velocity_truth.hpp"
 
 namespace truebearing {
 namespace {

@@ -1,4 +1,4 @@
-#include "truebearing/measurement/velocity_truth.hpp"
+#include "truebearing/recording/velocity_truth.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "truebearing/measurement/snapshot_log.hpp"
+#include "truebearing/recording/snapshot_log.hpp"
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@
 #include "truebearing/core/error.hpp"
 #include "truebearing/io/file.hpp"
 #include "truebearing/io/hdf5_file.hpp"
-#include "truebearing/measurement/velocity_truth.hpp"
+#include "truebearing/recording/velocity_truth.hpp"
 
 namespace truebearing {
 namespace {

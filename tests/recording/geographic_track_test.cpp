@@ -1,4 +1,4 @@
-#include "truebearing/measurement/geographic_track.hpp"
+#include "truebearing/recording/geographic_track.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "truebearing/measurement/snapshot_log.hpp"
+#include "truebearing/recording/snapshot_log.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

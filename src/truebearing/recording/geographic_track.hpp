@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "truebearing/measurement/recording.hpp"
+#include "truebearing/recording/recording.hpp"
 
 namespace truebearing {
 

@@ -1,4 +1,4 @@
-#include "truebearing/measurement/geographic_track.hpp"
+#include "truebearing/recording/geographic_track.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@
 #include "truebearing/core/angle.hpp"
 #include "truebearing/core/error.hpp"
 #include "truebearing/io/csv.hpp"
-#include "truebearing/measurement/velocity_truth.hpp"
+#include "truebearing/recording/velocity_truth.hpp"
 
 namespace truebearing {
 namespace {

@@ -1,4 +1,4 @@
-#include "truebearing/measurement/recording_csv.hpp"
+#include "truebearing/recording/recording_csv.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

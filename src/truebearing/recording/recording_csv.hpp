@@ -11,7 +11,7 @@
 #include <istream>
 #include <string>
 
-#include "truebearing/measurement/recording.hpp"
+#include "truebearing/recording/recording.hpp"
 
 namespace truebearing {
 

@@ -14,3 +14,8 @@ function(truebearing_options target)
     target_link_options(${target} PUBLIC -fsanitize=${TRUEBEARING_SANITIZE})
   endif()
 endfunction()
+
+# truebearing_precompile(TARGET): the headers of others that nearly every file reads, parsed once.
+function(truebearing_precompile target)
+  target_precompile_headers(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src/precompiled.hpp)
+endfunction()

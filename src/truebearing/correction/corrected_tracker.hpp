@@ -29,6 +29,9 @@ class CorrectedTracker final : public Tracker {
     return std::make_unique<CorrectedTracker>(ensemble_.fresh(), model_);
   }
   const StateSpace& space() const override { return *model_->space; }
+  std::optional<Measured> measures() const override {
+    return ensemble_.tracker(ensemble_.index(model_->base)).measures();
+  }
   RecordBlocks blocks() const override { return ensemble_.tracker(ensemble_.index(model_->base)).blocks(); }
   TrackerCounts counts() const override { return ensemble_.tracker(ensemble_.index(model_->base)).counts(); }
   std::span<const TrackEvent> events() const override {

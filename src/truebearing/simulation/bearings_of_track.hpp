@@ -19,6 +19,8 @@ class BearingsOfTrack final : public Scenario {
 
   Recording simulate(const RunKey& key) const override;
   const StateSpace& truth_space() const override { return parameters_.truth_space(); }
+  std::optional<Measured> measured() const override { return parameters_.measured(); }
+  bool reports_sigma() const override { return parameters_.sensor.reported; }
 
  private:
   Recording track_;

@@ -46,8 +46,7 @@ BearingFrequency<> model_of(const BearingsOnlyParameters& parameters, const Sens
 
 Recording empty_bearings(const BearingsOnlyParameters& parameters) {
   Recording recording;
-  recording.measured = {"bearing_deg"};
-  if (parameters.source) recording.measured.push_back("frequency_hz");
+  recording.measured = parameters.measured().components;
   recording.truth_space = &parameters.truth_space();
   recording.truth.resize(1);
   return recording;

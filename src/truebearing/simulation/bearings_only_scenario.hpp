@@ -65,6 +65,7 @@ struct BearingsOnlyParameters {
   std::optional<PositionBound> position_bound;
 
   const StateSpace& truth_space() const { return source ? plane_frequency_space() : plane_space(); }
+  Measured measured() const { return source ? Measured::bearing_frequency() : Measured::bearing(); }
 };
 
 /// A recording of what the sensor measures, with its truth and no step yet.
@@ -81,6 +82,8 @@ class BearingsOnlyScenario final : public Scenario {
   /// Throws InputError where a thousand draws were not accepted.
   Recording simulate(const RunKey& key) const override;
   const StateSpace& truth_space() const override { return parameters_.truth_space(); }
+  std::optional<Measured> measured() const override { return parameters_.measured(); }
+  bool reports_sigma() const override { return parameters_.sensor.reported; }
   const BearingsOnlyParameters& parameters() const { return parameters_; }
 
  private:

@@ -131,7 +131,7 @@ Recording LineArrayScenario::simulate(const RunKey& key) const {
   std::vector<double> amplitude(N);
 
   Recording recording;
-  recording.measured = {"snapshots"};
+  recording.measured = measured()->components;
   recording.truth_space = &angle_space();
   recording.truth.resize(N);
   if (p.phases) recording.phases = {"crossing", "manoeuvre", "quiet"};

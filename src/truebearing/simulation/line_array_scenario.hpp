@@ -74,6 +74,7 @@ class LineArrayScenario final : public Scenario {
   /// Throws InputError where no draw of random targets keeps to the limits.
   Recording simulate(const RunKey& key) const override;
   const StateSpace& truth_space() const override;
+  std::optional<Measured> measured() const override { return Measured::snapshots(); }
   const LineArrayParameters& parameters() const { return parameters_; }
 
  private:

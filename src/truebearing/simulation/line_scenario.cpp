@@ -18,7 +18,7 @@ Recording LineScenario::simulate(const RunKey& key) const {
   const Eigen::Vector2d process_sigma = (scale * parameters_.process_noise_variance).cwiseSqrt();
 
   Recording recording;
-  recording.measured = {"position_m"};
+  recording.measured = measured()->components;
   recording.truth_space = &line_space();
   recording.truth.resize(1);
   for (int k = 1; k <= parameters_.steps; ++k) {

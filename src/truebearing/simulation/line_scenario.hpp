@@ -29,6 +29,8 @@ class LineScenario final : public Scenario {
   explicit LineScenario(LineParameters parameters) : parameters_(std::move(parameters)) {}
   Recording simulate(const RunKey& key) const override;
   const StateSpace& truth_space() const override { return line_space(); }
+  std::optional<Measured> measured() const override { return Measured::position(1); }
+  bool reports_sigma() const override { return parameters_.reported; }
 
  private:
   LineParameters parameters_;

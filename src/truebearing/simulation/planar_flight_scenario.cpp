@@ -64,7 +64,7 @@ Recording PlanarFlightScenario::simulate(const RunKey& key) const {
   recorded.colwise() -= site_m;
 
   Recording recording;
-  recording.measured = parameters_.sensor.measured();
+  recording.measured = parameters_.sensor.measured().components;
   recording.truth_space = &truth_space();
   recording.truth.resize(1);
   if (parameters_.quiet_after_s) recording.phases = {"manoeuvre", "quiet"};

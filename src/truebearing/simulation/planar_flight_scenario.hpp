@@ -47,6 +47,8 @@ class PlanarFlightScenario final : public Scenario {
   explicit PlanarFlightScenario(PlanarFlightParameters parameters) : parameters_(std::move(parameters)) {}
   Recording simulate(const RunKey& key) const override;
   const StateSpace& truth_space() const override;
+  std::optional<Measured> measured() const override { return parameters_.sensor.measured(); }
+  bool reports_sigma() const override { return parameters_.sensor.reported; }
 
  private:
   PlanarFlightParameters parameters_;

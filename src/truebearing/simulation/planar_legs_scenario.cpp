@@ -32,7 +32,7 @@ Recording PlanarLegsScenario::simulate(const RunKey& key) const {
   const double sigma_m = parameters_.sensor.sigma_m.draw(scenario);
 
   Recording recording;
-  recording.measured = parameters_.sensor.measured();
+  recording.measured = parameters_.sensor.measured().components;
   recording.truth_space = &plane_space();
   recording.truth.resize(1);
   recording.phases = parameters_.phases;

@@ -34,6 +34,8 @@ class PlanarLegsScenario final : public Scenario {
   explicit PlanarLegsScenario(PlanarLegsParameters parameters) : parameters_(std::move(parameters)) {}
   Recording simulate(const RunKey& key) const override;
   const StateSpace& truth_space() const override { return plane_space(); }
+  std::optional<Measured> measured() const override { return parameters_.sensor.measured(); }
+  bool reports_sigma() const override { return parameters_.sensor.reported; }
 
  private:
   PlanarLegsParameters parameters_;

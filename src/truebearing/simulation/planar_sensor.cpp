@@ -7,16 +7,16 @@
 
 namespace truebearing {
 
-std::vector<std::string> PlanarSensor::measured() const {
+Measured PlanarSensor::measured() const {
   switch (output) {
     case Output::range:
-      return {"position_m"};
+      return Measured::position(1);
     case Output::range_bearing:
-      return {"range_m", "bearing_deg"};
+      return Measured::range_bearing();
     case Output::position:
       break;
   }
-  return {"east_m", "north_m"};
+  return Measured::position(2);
 }
 
 Measurement PlanarSensor::measure(double time_s, const Eigen::Vector2d& position_m, double drawn_sigma_m,

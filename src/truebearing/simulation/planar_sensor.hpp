@@ -4,10 +4,9 @@
 
 #include <Eigen/Core>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "truebearing/core/random.hpp"
+#include "truebearing/measurement/measured.hpp"
 #include "truebearing/measurement/measurement.hpp"
 #include "truebearing/simulation/distribution.hpp"
 
@@ -24,8 +23,7 @@ struct PlanarSensor {
   double outlier_factor = 1.0;          ///< that many times as large
   bool reported = false;                ///< does a measurement carry its standard deviations?
 
-  /// Names of the components of z.
-  std::vector<std::string> measured() const;
+  Measured measured() const;
   /// The measurement of a target at `position_m` from the sensor, with sigma_m as it was drawn.
   Measurement measure(double time_s, const Eigen::Vector2d& position_m, double drawn_sigma_m,
                       RandomStream& stream) const;

@@ -10,9 +10,8 @@
 
 namespace truebearing {
 
-std::vector<std::string> RecordedSensor::measured() const {
-  if (output == Output::range_bearing) return {"range_m", "bearing_deg"};
-  return {"east_m", "north_m"};
+Measured RecordedSensor::measured() const {
+  return output == Output::range_bearing ? Measured::range_bearing() : Measured::position(2);
 }
 
 RecordedScenario::RecordedScenario(Recording recorded, std::optional<double> sigma) {
@@ -59,9 +58,9 @@ RecordedScenario::RecordedScenario(std::vector<Recording> positions, const Recor
   if (range_bearing) sigma[1] = sensor.bearing_sigma_rad;
   for (Recording& recording : positions) {
     if (recording.truth_space != &plane_space() || recording.truth.size() != 1 ||
-        recording.measured != std::vector<std::string>{"east_m", "north_m"})
+        recording.measured != Measured::position(2).components)
       throw InputError("recording", "holds no positions in the plane", "east_m and north_m with their truth");
-    recording.measured = sensor.measured();
+    recording.measured = sensor.measured().components;
     for (BoundedVector& x : recording.truth[0].x) x.head<2>() -= sensor.site_m;
     for (Measurement& measurement : recording.measurements) {
       const Eigen::Vector2d position_m = measurement.z - sensor.site_m;
@@ -72,6 +71,11 @@ RecordedScenario::RecordedScenario(std::vector<Recording> positions, const Recor
     const std::size_t steps = recording.measurements.size();
     tracks_.push_back({std::move(recording), std::vector<BoundedVector>(steps, sigma)});
   }
+}
+
+bool RecordedScenario::reports_sigma() const {
+  const std::vector<Measurement>& measurements = tracks_.front().exact.measurements;
+  return std::any_of(measurements.begin(), measurements.end(), [](const Measurement& m) { return m.sigma.size() > 0; });
 }
 
 Recording RecordedScenario::simulate(const RunKey& key) const {

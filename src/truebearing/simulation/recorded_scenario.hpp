@@ -5,7 +5,6 @@
 
 #include <Eigen/Core>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "truebearing/simulation/scenario.hpp"
@@ -23,8 +22,7 @@ struct RecordedSensor {
   Eigen::Vector2d site_m = Eigen::Vector2d::Zero();
   bool reported = false;  ///< does a measurement carry its standard deviations?
 
-  /// Names of the components of z.
-  std::vector<std::string> measured() const;
+  Measured measured() const;
 };
 
 class RecordedScenario final : public Scenario {
@@ -40,6 +38,8 @@ class RecordedScenario final : public Scenario {
 
   Recording simulate(const RunKey& key) const override;
   const StateSpace& truth_space() const override { return *tracks_.front().exact.truth_space; }
+  std::optional<Measured> measured() const override { return Measured::of(tracks_.front().exact.measured); }
+  bool reports_sigma() const override;
 
  private:
   struct Track {

@@ -6,11 +6,13 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "truebearing/core/random.hpp"
 #include "truebearing/core/state_space.hpp"
 #include "truebearing/io/table_reader.hpp"
+#include "truebearing/measurement/measured.hpp"
 #include "truebearing/recording/recording.hpp"
 
 namespace truebearing {
@@ -22,6 +24,10 @@ class Scenario {
   virtual Recording simulate(const RunKey& key) const = 0;
   /// The space of the truth of every run.
   virtual const StateSpace& truth_space() const = 0;
+  /// What the measurements of every run are; nothing where it does not say.
+  virtual std::optional<Measured> measured() const { return std::nullopt; }
+  /// Whether measurements carry their standard deviations.
+  virtual bool reports_sigma() const { return false; }
   /// What whoever reads its results should know of it, as a line; mostly nothing.
   virtual std::string note() const { return {}; }
 

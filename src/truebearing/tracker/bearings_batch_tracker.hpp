@@ -53,6 +53,9 @@ class BearingsBatchTracker final : public Tracker {
   void reset() override;
   std::unique_ptr<Tracker> fresh() const override { return std::make_unique<BearingsBatchTracker>(options_); }
   const StateSpace& space() const override { return options_.frequency ? plane_frequency_space() : plane_space(); }
+  std::optional<Measured> measures() const override {
+    return options_.frequency ? Measured::bearing_frequency() : Measured::bearing();
+  }
   TrackerCounts counts() const override { return guard_.counts; }
 
   /// The first range_known; of the source, source_changed; where the options cut at manoeuvres, turn_began.

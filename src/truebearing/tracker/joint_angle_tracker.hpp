@@ -50,6 +50,7 @@ class JointAngleTracker final : public Tracker {
   void reset() override;
   std::unique_ptr<Tracker> fresh() const override { return std::make_unique<JointAngleTracker>(options_); }
   const StateSpace& space() const override { return angle_space(); }
+  std::optional<Measured> measures() const override { return Measured::snapshots(); }
   RecordBlocks blocks() const override {
     return {.prediction = true, .innovation = true, .gain = true, .neighbour = true};
   }

@@ -40,6 +40,9 @@ class PassiveSonarTracker final : public Tracker {
   void reset() override;
   std::unique_ptr<Tracker> fresh() const override;
   const StateSpace& space() const override { return filter_->space(); }
+  std::optional<Measured> measures() const override {
+    return filter_->measures() ? filter_->measures() : batch_->measures();
+  }
   RecordBlocks blocks() const override { return filter_->blocks(); }
   TrackerCounts counts() const override { return following_ ? sum_of_counts() : batch_->counts(); }
   std::span<const TrackEvent> events() const override { return events_; }

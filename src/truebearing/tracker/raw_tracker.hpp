@@ -30,6 +30,7 @@ class RawTracker final : public Tracker {
 
   std::unique_ptr<Tracker> fresh() const override { return std::make_unique<RawTracker>(*space_, sigma_); }
   const StateSpace& space() const override { return *space_; }
+  std::optional<Measured> measures() const override { return Measured::of(space_->components); }
   TrackerCounts counts() const override { return guard_.counts; }
 
  private:

@@ -25,6 +25,10 @@ class RecordedTracker final : public Tracker {
   void reset() override { next_ = 0; }
   std::unique_ptr<Tracker> fresh() const override;
   const StateSpace& space() const override { return *space_; }
+  /// Beside a log of its own any measurement will do: it asks for the time alone.
+  std::optional<Measured> measures() const override {
+    return log_ ? std::nullopt : std::optional(Measured::step_log(*space_));
+  }
   /// In the plane z_1 and z_2 of a step log are the measured position.
   RecordBlocks blocks() const override {
     return {.innovation = innovation_, .measures_position = innovation_ && *space_ == plane_space()};

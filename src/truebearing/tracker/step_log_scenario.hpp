@@ -32,6 +32,7 @@ class StepLogScenario final : public Scenario {
   /// Throws InputError where no file matches, or a log has another state or no truth.
   Recording simulate(const RunKey& key) const override;
   const StateSpace& truth_space() const override { return *space_; }
+  std::optional<Measured> measured() const override { return Measured::step_log(*space_); }
   std::string note() const override;
 
   /// The tracks of one log, with or without truth; "-" is standard input.

@@ -55,6 +55,7 @@ class SubspaceAngleTracker final : public Tracker {
   void reset() override;
   std::unique_ptr<Tracker> fresh() const override { return std::make_unique<SubspaceAngleTracker>(options_); }
   const StateSpace& space() const override { return angle_space(); }
+  std::optional<Measured> measures() const override { return Measured::snapshots(); }
   RecordBlocks blocks() const override {
     return {.prediction = true, .innovation = true, .gain = true, .neighbour = true};
   }

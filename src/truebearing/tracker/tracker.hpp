@@ -3,9 +3,11 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 
+#include "truebearing/measurement/measured.hpp"
 #include "truebearing/measurement/measurement.hpp"
 #include "truebearing/tracker/step_record.hpp"
 
@@ -82,6 +84,10 @@ class Tracker {
 
   /// The space of the records' states.
   virtual const StateSpace& space() const = 0;
+
+  /// What it takes, so that a study that pairs it with a scenario of something else is refused when it is read; nothing
+  /// where it does not say.
+  virtual std::optional<Measured> measures() const { return std::nullopt; }
 
   /// Which blocks its records carry, so that what a feature needs is checked when a study is read.
   virtual RecordBlocks blocks() const { return {}; }

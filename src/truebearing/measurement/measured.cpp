@@ -1,0 +1,55 @@
+#include "truebearing/measurement/measured.hpp"
+
+#include <fmt/format.h>
+#include <utility>
+
+namespace truebearing {
+namespace {
+
+constexpr const char* kStepLog = "step_log";
+
+}  // namespace
+
+Measured Measured::position(int dimensions) {
+  if (dimensions == 1) return {"position", {"position_m"}};
+  return {"position", {"east_m", "north_m"}};
+}
+
+Measured Measured::range_bearing() {
+  return {"range_bearing", {"range_m", "bearing_deg"}};
+}
+
+Measured Measured::bearing() {
+  return {"bearing", {"bearing_deg"}};
+}
+
+Measured Measured::bearing_frequency() {
+  return {"bearing_frequency", {"bearing_deg", "frequency_hz"}};
+}
+
+Measured Measured::snapshots() {
+  return {"snapshots", {"snapshots"}};
+}
+
+Measured Measured::step_log(const StateSpace& space) {
+  return {kStepLog, space.components};
+}
+
+Measured Measured::of(std::vector<std::string> components) {
+  for (Measured known : {position(1), position(2), range_bearing(), bearing(), bearing_frequency(), snapshots()})
+    if (known.components == components) return known;
+  return {"values", std::move(components)};
+}
+
+std::string describe(const Measured& measured) {
+  return fmt::format("{} ({})", measured.kind, fmt::join(measured.components, ", "));
+}
+
+std::optional<std::string> mismatch(const Measured& taken, const Measured& given, const std::string& giver) {
+  if (taken == given) return std::nullopt;
+  if (taken == Measured::bearing() && given == Measured::bearing_frequency()) return std::nullopt;
+  if (given.kind == kStepLog && taken.kind != kStepLog) return std::nullopt;
+  return fmt::format("measures {}, {} gives {}", describe(taken), giver, describe(given));
+}
+
+}  // namespace truebearing

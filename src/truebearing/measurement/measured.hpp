@@ -1,0 +1,40 @@
+// What is measured: the kind, and the components of z with their units as logs name them. A sensor says what it takes,
+// a scenario what it gives, and a study compares the two when it is read (study/measured_check.hpp).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "truebearing/core/state_space.hpp"
+
+namespace truebearing {
+
+struct Measured {
+  std::string kind;                     ///< "position"; a sensor of another kind has a word of its own
+  std::vector<std::string> components;  ///< of z, as Recording::measured: "east_m", "bearing_deg"
+
+  bool operator==(const Measured&) const = default;
+
+  /// On a line (1 dimension) "position_m", in the plane (2) "east_m" and "north_m".
+  static Measured position(int dimensions);
+  static Measured range_bearing();
+  static Measured bearing();
+  static Measured bearing_frequency();
+  /// The blocks of a line array, which have no z.
+  static Measured snapshots();
+  /// What a tracker that ran elsewhere made of its measurements: states of that space.
+  static Measured step_log(const StateSpace& space);
+  /// The kind above that has these components; "values" where none has.
+  static Measured of(std::vector<std::string> components);
+};
+
+/// "range_bearing (range_m, bearing_deg)".
+std::string describe(const Measured& measured);
+
+/// Why a tracker that takes `taken` cannot use what `giver` ("the scenario") gives, in words that follow the tracker's
+/// name; nothing where it can. A bearing may come with a frequency, which is left alone. What is measured beside the
+/// states of a step log stands in the log itself: it is taken for what is wanted.
+std::optional<std::string> mismatch(const Measured& taken, const Measured& given, const std::string& giver);
+
+}  // namespace truebearing

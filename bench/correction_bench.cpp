@@ -16,7 +16,7 @@
 #include "truebearing/filter/kalman.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
 #include "truebearing/tracker/filter_bank.hpp"
-#include "truebearing/tracker/filter_tracker.hpp"
+#include "truebearing/tracker/filter_tracker_of.hpp"
 #include "truebearing/tracker/position_sensor.hpp"
 
 namespace truebearing::bench {
@@ -25,8 +25,7 @@ namespace {
 using Noise = FixedNoise<2>;
 using Motion = ConstantVelocity<1, Noise>;
 using Sensor = PositionSensor<1>;
-using RadarTracker = FilterTracker<KalmanFilter<2>, Motion, Sensor>;
-using Bank = FilterBank<KalmanFilter<2>, Motion, Sensor>;
+using RadarTracker = FilterTrackerOf<KalmanFilter<2>, Motion, Sensor>;
 
 Motion motion(double factor = 1.0) {
   return {Noise{factor * Eigen::Vector2d(5.0, 0.1).asDiagonal().toDenseMatrix(), kPeriod_s}};
@@ -37,7 +36,7 @@ Sensor sensor(double variance_m2) {
 }
 
 std::unique_ptr<Tracker> radar_tracker(double variance_m2, const Eigen::Vector2d& P0) {
-  const RadarTracker::Prior prior{Eigen::Vector2d::Zero(), P0.asDiagonal(), 0.0};
+  const PriorStart prior{Eigen::Vector2d::Zero(), P0.asDiagonal().toDenseMatrix(), 0.0};
   return std::make_unique<RadarTracker>(line_space(), motion(), sensor(variance_m2), prior);
 }
 
@@ -119,14 +118,21 @@ void corrected(benchmark::State& state) {
 BENCHMARK(corrected)->ArgName("rules")->Arg(16)->Arg(32);
 
 void bank(benchmark::State& state) {
-  std::vector<Bank::Hypothesis> hypotheses;
+  const std::vector<std::shared_ptr<const SizedMotion<2>>> motions{erased(motion(0.4)), erased(motion(1.6))};
+  std::vector<std::unique_ptr<AnySensor>> sensors;
+  for (const double variance_factor : {0.25, 0.5, 1.0, 2.0, 4.0})
+    sensors.push_back(sensor_of(sensor(1e7 * variance_factor)));
+  std::vector<FilterBank::Hypothesis> hypotheses;
+  std::vector<std::size_t> motion_of;
   for (int velocity_mps = -375; velocity_mps <= 375; velocity_mps += 50)
-    for (const double variance_factor : {0.25, 0.5, 1.0, 2.0, 4.0})
-      for (const double noise_factor : {0.4, 1.6})
-        hypotheses.push_back({KalmanFilter<2>(Eigen::Vector2d(0.0, velocity_mps),
-                                              Eigen::Vector2d(1e6, 484.0).asDiagonal().toDenseMatrix()),
-                              motion(noise_factor), sensor(1e7 * variance_factor)});
-  Bank filters(line_space(), std::move(hypotheses));
+    for (std::size_t s = 0; s < sensors.size(); ++s)
+      for (std::size_t m = 0; m < motions.size(); ++m) {
+        hypotheses.push_back({Eigen::Vector2d(0.0, velocity_mps),
+                              Eigen::Vector2d(1e6, 484.0).asDiagonal().toDenseMatrix(), s});
+        motion_of.push_back(m);
+      }
+  FilterBank filters(line_space(), std::make_unique<FilterGroupOf<KalmanFilter<2>>>(motions, motion_of),
+                     std::move(sensors), std::move(hypotheses));
   run(state, filters);
 }
 BENCHMARK(bank);

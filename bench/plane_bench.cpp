@@ -25,7 +25,7 @@
 #include "truebearing/motion/one_of.hpp"
 #include "truebearing/motion/singer.hpp"
 #include "truebearing/motion/turning_target.hpp"
-#include "truebearing/tracker/filter_tracker.hpp"
+#include "truebearing/tracker/filter_tracker_of.hpp"
 #include "truebearing/tracker/position_sensor.hpp"
 
 namespace truebearing::bench {
@@ -120,34 +120,34 @@ BENCHMARK(unscented_turning);
 BENCHMARK(unscented_polar);
 
 using Turns = OneOf<Cv, Ct>;
-using TurnMode = Mode<KalmanFilter<4>, Turns>;
-using Imm = InteractingMultipleModel<TurnMode>;
 
-Imm::Models six_models() {
-  Imm::Models models{{}, star_chain(6, 0.037, 0.084, 0.7, 1.0)};
-  models.modes.push_back(TurnMode{Turns{Cv{{0.55}}}});
+std::unique_ptr<TrackedState> six_models() {
+  InteractingMultipleModel::Modes modes;
+  modes.push_back(state_of<KalmanFilter<4>>(Turns{Cv{{0.55}}}));
   for (const double rate_degps : {-5.0, -2.0, 2.0, 5.0})
-    models.modes.push_back(TurnMode{Turns{Ct{{2.1}, rate_degps * 0.0174533}}});
-  models.modes.push_back(TurnMode{Turns{Cv{{22.5}}}});
-  return models;
+    modes.push_back(state_of<KalmanFilter<4>>(Turns{Ct{{2.1}, rate_degps * 0.0174533}}));
+  modes.push_back(state_of<KalmanFilter<4>>(Turns{Cv{{22.5}}}));
+  return std::make_unique<InteractingMultipleModel>(std::move(modes), star_chain(6, 0.037, 0.084, 0.7, 1.0));
 }
 
 void imm6(benchmark::State& state) {
   const std::vector<Eigen::Vector2d> z = positions();
-  const Imm::Models models = six_models();
+  const std::unique_ptr<TrackedState> run = six_models();
+  const Eigen::Vector4d x0(5000.0, 20000.0, 0.0, 200.0);
+  const Eigen::Matrix4d P0 = Eigen::Vector4d(1e4, 1e4, 2e4, 2e4).asDiagonal();
+  StateUpdate update;
   for (auto _ : state) {
-    Imm run(Eigen::Vector4d(5000.0, 20000.0, 0.0, 200.0),
-            Eigen::Vector4d(1e4, 1e4, 2e4, 2e4).asDiagonal().toDenseMatrix(), models);
+    run->begin(x0.data(), P0.data());
     for (const Eigen::Vector2d& value : z) {
-      run.predict(models, 1.0);
-      benchmark::DoNotOptimize(run.update(kPosition, value));
+      run->predict(1.0);
+      benchmark::DoNotOptimize(run->update(ErasedMeasurement<Position<2>>(kPosition, value, true), update));
     }
   }
   count_steps(state);
 }
 BENCHMARK(imm6);
 
-using CvTracker = FilterTracker<KalmanFilter<4>, Cv, PositionSensor<2>>;
+using CvTracker = FilterTrackerOf<KalmanFilter<4>, Cv, PositionSensor<2>>;
 
 std::unique_ptr<Tracker> cv_tracker(double sigma_a) {
   return std::make_unique<CvTracker>(plane_space(), Cv{{sigma_a}}, PositionSensor<2>{{kSigma_m, kSigma_m}, 1.0},
@@ -220,8 +220,8 @@ void tracker_cv(benchmark::State& state) {
   step_all(state, *tracker);
 }
 void tracker_imm6(benchmark::State& state) {
-  FilterTracker<Imm, Imm::Models, PositionSensor<2>> tracker(
-      plane_space(), six_models(), PositionSensor<2>{{kSigma_m, kSigma_m}, 1.0}, TwoPointStart{});
+  FilterTracker tracker(plane_space(), six_models(), sensor_of(PositionSensor<2>{{kSigma_m, kSigma_m}, 1.0}),
+                        TwoPointStart{});
   step_all(state, tracker);
 }
 void tracker_ensemble(benchmark::State& state) {

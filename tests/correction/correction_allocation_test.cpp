@@ -103,10 +103,7 @@ TEST(FilterTracker, StepsAllocateNothing) {
 }
 
 TEST(FilterBank, StepsAllocateNothing) {
-  using Bank = FilterBank<KalmanFilter<2>, testing::RadarMotion, PositionSensor<1>>;
-  const RadarFilter radar;
-  Bank bank(line_space(), {10, Bank::Hypothesis{radar.filter(), radar.motion(), radar.sensor()}});
-  EXPECT_EQ(allocations_of_second_pass(bank), 0);
+  EXPECT_EQ(allocations_of_second_pass(*testing::radar_bank(std::vector<RadarFilter>(10))), 0);
 }
 
 TEST(CorrectedTracker, StepsInThePlaneAllocateNothing) {

@@ -7,7 +7,7 @@
 #include "tests/support/line_trackers.hpp"
 #include "truebearing/filter/kalman.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
-#include "truebearing/tracker/filter_tracker.hpp"
+#include "truebearing/tracker/filter_tracker_of.hpp"
 #include "truebearing/tracker/position_sensor.hpp"
 
 namespace truebearing {
@@ -343,7 +343,7 @@ TEST(Feature, ParityIsWhatAMirroredTargetDoes) {
 class PlaneTrackers {
  public:
   using Motion = ConstantVelocity<2, DiscreteWhiteNoise>;
-  using Filter = FilterTracker<KalmanFilter<4>, Motion, PositionSensor<2>>;
+  using Filter = FilterTrackerOf<KalmanFilter<4>, Motion, PositionSensor<2>>;
 
   explicit PlaneTrackers(std::vector<FeatureSpec> specs)
       : base_(plane_space(), Motion{{8.0}}, {{100.0, 100.0}, 1.0}, TwoPointStart{}),

@@ -32,7 +32,7 @@ TEST(CompanionDifference, IsTheTwoStageBiasEstimate) {
     const Eigen::Matrix2d P0 = covariance(random, 30.0, 30.0), M = covariance(random, 1000.0, 200.0);
     const auto started_at = [&](const Eigen::Matrix2d& P) {
       return testing::RadarTracker(line_space(), radar.motion(), radar.sensor(),
-                                   PriorStart<2>{Eigen::Vector2d::Zero(), P});
+                                   PriorStart{Eigen::Vector2d::Zero(), P});
     };
     testing::RadarTracker base = started_at(P0), companion = started_at(P0 + M);
 

@@ -9,14 +9,14 @@
 #include "truebearing/filter/log_polar.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
 #include "truebearing/tracker/bearing_sensor.hpp"
-#include "truebearing/tracker/filter_tracker.hpp"
+#include "truebearing/tracker/filter_tracker_of.hpp"
 #include "truebearing/tracker/range_bank.hpp"
 
 namespace truebearing::testing {
 
 using BearingMotion = ConstantVelocity<2, ContinuousWhiteNoise>;
 template <typename Filter>
-using BearingTracker = FilterTracker<Filter, BearingMotion, BearingSensor>;
+using BearingTracker = FilterTrackerOf<Filter, BearingMotion, BearingSensor>;
 
 /// The guess from the measurements, velocities of 4 m/s per axis.
 inline RangePrior guessed_range() {
@@ -34,8 +34,8 @@ std::unique_ptr<Tracker> bearing_tracker(FilterTrackerOptions options = {}) {
 
 /// A bank of extended filters on `hypotheses`.
 inline std::unique_ptr<Tracker> range_bank(const RangeHypotheses& hypotheses) {
-  return truebearing::range_bank<KalmanFilter<4>>(plane_space(), BearingMotion{{1e-6}},
-                                                  BearingSensor{radians(1.0), 1.0}, hypotheses);
+  return truebearing::range_bank(plane_space(), FilterKind::kalman, erased(BearingMotion{{1e-6}}),
+                                 sensor_of(BearingSensor{radians(1.0), 1.0}), hypotheses);
 }
 
 }  // namespace truebearing::testing

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "truebearing/core/random.hpp"
@@ -11,7 +12,8 @@
 #include "truebearing/filter/kalman.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
 #include "truebearing/simulation/line_scenario.hpp"
-#include "truebearing/tracker/filter_tracker.hpp"
+#include "truebearing/tracker/filter_bank.hpp"
+#include "truebearing/tracker/filter_tracker_of.hpp"
 #include "truebearing/tracker/position_sensor.hpp"
 
 namespace truebearing::testing {
@@ -20,7 +22,7 @@ inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 using RadarMotion = ConstantVelocity<1, FixedNoise<2>>;
-using RadarTracker = FilterTracker<KalmanFilter<2>, RadarMotion, PositionSensor<1>>;
+using RadarTracker = FilterTrackerOf<KalmanFilter<2>, RadarMotion, PositionSensor<1>>;
 
 /// The filter of the 1-D radar studies, number by number.
 struct RadarFilter {
@@ -32,12 +34,31 @@ struct RadarFilter {
 
   RadarMotion motion() const { return {{noise_variance.asDiagonal(), 1.0}}; }
   PositionSensor<1> sensor() const { return {Eigen::Matrix<double, 1, 1>(sigma_m), 1.0}; }
-  KalmanFilter<2> filter() const { return {x0, variance.asDiagonal()}; }
   std::unique_ptr<RadarTracker> tracker() const {
     return std::make_unique<RadarTracker>(line_space(), motion(), sensor(),
-                                          PriorStart<2>{x0, variance.asDiagonal(), 0.0}, options);
+                                          PriorStart{x0, variance.asDiagonal().toDenseMatrix(), 0.0}, options);
   }
 };
+
+/// A bank of such filters, one for each and with the weights given, or all alike.
+inline std::unique_ptr<FilterBank> radar_bank(const std::vector<RadarFilter>& hypotheses,
+                                              const std::vector<double>& log_weights = {}) {
+  std::vector<std::shared_ptr<const SizedMotion<2>>> motions;
+  std::vector<std::size_t> motion_of;
+  std::vector<std::unique_ptr<AnySensor>> sensors;
+  std::vector<FilterBank::Hypothesis> priors;
+  for (const RadarFilter& radar : hypotheses) {
+    const std::size_t i = priors.size();
+    motions.push_back(erased(radar.motion()));
+    motion_of.push_back(i);
+    sensors.push_back(sensor_of(radar.sensor()));
+    priors.push_back({radar.x0, radar.variance.asDiagonal().toDenseMatrix(), i,
+                      log_weights.empty() ? 0.0 : log_weights[i]});
+  }
+  return std::make_unique<FilterBank>(
+      line_space(), std::make_unique<FilterGroupOf<KalmanFilter<2>>>(std::move(motions), std::move(motion_of)),
+      std::move(sensors), std::move(priors));
+}
 
 inline Measurement position(double time_s, double z_m) {
   return {.time_s = time_s, .z = BoundedVector::Constant(1, z_m), .sigma = {}, .sensor = {}};

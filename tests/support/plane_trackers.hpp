@@ -10,26 +10,28 @@
 #include "truebearing/filter/interacting_multiple_model.hpp"
 #include "truebearing/filter/kalman.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
-#include "truebearing/tracker/filter_tracker.hpp"
+#include "truebearing/tracker/filter_tracker_of.hpp"
 #include "truebearing/tracker/position_sensor.hpp"
 
 namespace truebearing::testing {
 
 using PlaneMotion = ConstantVelocity<2, DiscreteWhiteNoise>;
-using PlaneMode = Mode<KalmanFilter<4>, PlaneMotion>;
-using PlaneImm = InteractingMultipleModel<PlaneMode>;
 
 inline const PositionSensor<2> kPlaneSensor{{100.0, 100.0}, 1.0};
 
 inline std::unique_ptr<Tracker> plane_tracker(double sigma_a_mps2) {
-  return std::make_unique<FilterTracker<KalmanFilter<4>, PlaneMotion, PositionSensor<2>>>(
+  return std::make_unique<FilterTrackerOf<KalmanFilter<4>, PlaneMotion, PositionSensor<2>>>(
       plane_space(), PlaneMotion{{sigma_a_mps2}}, kPlaneSensor, TwoPointStart{});
 }
 
 inline std::unique_ptr<Tracker> plane_imm() {
-  const PlaneImm::Models models{{PlaneMode{{{1.0}}}, PlaneMode{{{30.0}}}}, star_chain(2, 0.05, 0.1, 1.0, 1.0)};
-  return std::make_unique<FilterTracker<PlaneImm, PlaneImm::Models, PositionSensor<2>>>(plane_space(), models,
-                                                                                        kPlaneSensor, TwoPointStart{});
+  InteractingMultipleModel::Modes modes;
+  modes.push_back(state_of<KalmanFilter<4>>(PlaneMotion{{1.0}}));
+  modes.push_back(state_of<KalmanFilter<4>>(PlaneMotion{{30.0}}));
+  return std::make_unique<FilterTracker>(
+      plane_space(),
+      std::make_unique<InteractingMultipleModel>(std::move(modes), star_chain(2, 0.05, 0.1, 1.0, 1.0)),
+      sensor_of(kPlaneSensor), TwoPointStart{});
 }
 
 inline Ensemble plane_ensemble() {

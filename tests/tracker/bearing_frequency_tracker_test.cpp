@@ -17,7 +17,7 @@ using testing::guessed_range;
 using testing::kFrequencySensor;
 
 template <typename Filter>
-using FrequencyTracker = FilterTracker<Filter, FrequencyMotion, BearingFrequencySensor>;
+using FrequencyTracker = FilterTrackerOf<Filter, FrequencyMotion, BearingFrequencySensor>;
 
 template <typename Filter>
 FrequencyTracker<Filter> tracker_of() {
@@ -57,13 +57,13 @@ TEST(BearingFrequencySensor, BelievesTheFrequencyThatGoesWithTheVelocity) {
   m.sensor = SensorState{{0.0, 0.0}, {0.0, 3.0}};
   const GaussianState plane{Eigen::Vector4d(0.0, 5000.0, 1.0, 18.0), Eigen::Vector4d(1e4, 1e6, 9.0, 16.0).asDiagonal()};
   const BearingFrequencySensor sensor{0.02, 0.1};
-  const auto start = sensor.start(plane, m);
+  const auto start = sensor.believe(plane, m);
   ASSERT_TRUE(start);
   EXPECT_DOUBLE_EQ(start->x[4], 101.0);
   EXPECT_DOUBLE_EQ(start->P(4, 4), 0.01 + 16.0 / 225.0);
   EXPECT_DOUBLE_EQ(start->P(4, 3), 16.0 / 15.0);
   EXPECT_EQ(start->P(4, 2), 0.0);
-  EXPECT_FALSE(sensor.start(plane, without_frequency(m)));
+  EXPECT_FALSE(sensor.believe(plane, without_frequency(m)));
 }
 
 template <typename Filter, typename Plain>
@@ -165,7 +165,7 @@ TEST(BearingFrequencyTracker, TakesOverWhereAnotherEnds) {
 
 TEST(BearingFrequencyTracker, OfSevenStatesBeginsWithoutAcceleration) {
   using Motion = WithFrequency<ConstantAcceleration<2>>;
-  FilterTracker<ModifiedGainFilter<7>, Motion, BearingFrequencySensor> tracker(
+  FilterTrackerOf<ModifiedGainFilter<7>, Motion, BearingFrequencySensor> tracker(
       plane_frequency_space(), Motion{{{1e-12}}}, kFrequencySensor, HandOverStart{1e-3});
   tracker.take_over(0.0, Eigen::Vector<double, 5>(1000.0, 2000.0, 3.0, 4.0, 100.0),
                     Eigen::Matrix<double, 5, 5>::Identity());

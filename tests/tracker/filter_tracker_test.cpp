@@ -88,9 +88,9 @@ TEST(FilterTracker, StepsAreAsLongAsTheTimesSay) {
 template <typename Noise>
 void expect_no_trace_of_missing(const Noise& noise, const FilterTrackerOptions& options) {
   using Motion = ConstantVelocity<1, Noise>;
-  FilterTracker<KalmanFilter<2>, Motion, PositionSensor<1>> tracker(
+  FilterTrackerOf<KalmanFilter<2>, Motion, PositionSensor<1>> tracker(
       line_space(), Motion{noise}, RadarFilter{}.sensor(),
-      PriorStart<2>{{0.0, 0.0}, Eigen::Vector2d(1e6, 5e4).asDiagonal()}, options);
+      PriorStart{Eigen::Vector2d::Zero(), Eigen::Vector2d(1e6, 5e4).asDiagonal().toDenseMatrix()}, options);
   const auto clean = tracker.fresh();
   RandomStream random({}, StreamId::test);
   int missing = 0;

@@ -43,23 +43,20 @@ class Oracle final : public Tracker {
   StepRecord record_;
 };
 
-using OneMode = Mode<KalmanFilter<5>, FrequencyMotion>;
-
-MultipleModels<OneMode> two_levels() {
-  MultipleModels<OneMode> models;
-  models.modes = {OneMode{{{{1e-9}}}}, OneMode{{{{1e-2}}}}};
-  models.chain = star_chain(2, 0.002, 0.05, 1.0, 8.0);
-  models.chain.initial = Eigen::Vector2d(0.99, 0.01);
-  return models;
+std::unique_ptr<TrackedState> two_levels() {
+  InteractingMultipleModel::Modes modes;
+  for (const double q_m2ps3 : {1e-9, 1e-2}) modes.push_back(state_of<KalmanFilter<5>>(FrequencyMotion{{{q_m2ps3}}}));
+  MarkovChain chain = star_chain(2, 0.002, 0.05, 1.0, 8.0);
+  chain.initial = Eigen::Vector2d(0.99, 0.01);
+  return std::make_unique<InteractingMultipleModel>(std::move(modes), chain);
 }
 
 PassiveSonarTracker sonar(const Recording& recording, PassiveSonarOptions options = {},
                           const StateSpace& space = plane_frequency_space(), double known_s = 0.0) {
-  using Filter = FilterTracker<InteractingMultipleModel<OneMode>, MultipleModels<OneMode>, BearingFrequencySensor>;
   options.hand_over_s = kHandOver_s;
   options.sensor = kFrequencySensor;
   return {options, std::make_unique<Oracle>(recording, known_s),
-          std::make_unique<Filter>(space, two_levels(), kFrequencySensor, HandOverStart{})};
+          std::make_unique<FilterTracker>(space, two_levels(), sensor_of(kFrequencySensor), HandOverStart{})};
 }
 
 std::vector<Kind> kinds(const Tracker& tracker) {

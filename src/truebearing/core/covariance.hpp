@@ -67,6 +67,15 @@ double mahalanobis_squared(const Eigen::MatrixBase<DerivedP>& P, const Eigen::Ma
   return Elimination(P, d).squared;
 }
 
+/// ln |S|, or NaN where S is not positive definite.
+template <typename Derived>
+double log_determinant(const Eigen::MatrixBase<Derived>& S) {
+  if constexpr (Derived::RowsAtCompileTime == 1) return std::log(S(0, 0));
+  if constexpr (Derived::RowsAtCompileTime == 2) return std::log(S(0, 0) * S(1, 1) - S(1, 0) * S(0, 1));
+  using Vector = Eigen::Matrix<double, Derived::RowsAtCompileTime, 1, 0, Derived::MaxRowsAtCompileTime, 1>;
+  return detail::Elimination<typename Derived::PlainObject, Vector>(S, Vector::Zero(S.rows())).log_determinant;
+}
+
 /// Logarithm of the density of N(0, S) at nu, or NaN where S is not positive definite.
 template <typename DerivedS, typename DerivedNu>
 double log_density(const Eigen::MatrixBase<DerivedS>& S, const Eigen::MatrixBase<DerivedNu>& nu) {

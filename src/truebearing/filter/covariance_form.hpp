@@ -10,6 +10,7 @@
 #include "truebearing/filter/factorization.hpp"
 #include "truebearing/filter/product.hpp"
 #include "truebearing/filter/update.hpp"
+#include "truebearing/motion/any_motion.hpp"
 
 namespace truebearing {
 
@@ -47,6 +48,13 @@ struct CovarianceForm {
     add_product<1, Part::lower>(FP, transposed(F), P);
     mirror_lower<N, Scalar>(P);
     return is_positive_semidefinite<N, Scalar>(P);
+  }
+
+  /// predict() across a motion whose type is not known here. x becomes f(x).
+  template <int N>
+  static bool across(const SizedMotion<N>& motion, double dt_s, Eigen::Matrix<double, N, 1>& x,
+                     Eigen::Matrix<double, N, N>& P) {
+    return motion.carry(dt_s, x, P);
   }
 
   /// S, K and NIS; PHt = P H' (n x m). False where R is not positive semi-definite, or where S has lost its digits:

@@ -14,6 +14,7 @@
 #include "truebearing/filter/square_root.hpp"
 #include "truebearing/filter/update.hpp"
 #include "truebearing/measurement/measurement_model.hpp"
+#include "truebearing/motion/any_motion.hpp"
 #include "truebearing/motion/motion_model.hpp"
 
 namespace truebearing {
@@ -50,6 +51,14 @@ class KalmanFilter {
     const State x = motion.f(x_, dt_s);
     Covariance carried = carried_;
     const bool valid = Form::template predict<N, Scalar>(motion.F(x_, dt_s), motion.Q(dt_s), carried);
+    return commit(valid, x, carried);
+  }
+
+  /// The same across a motion whose type is not known here: it carries the estimate itself, where Form carries P.
+  StepStatus predict(const SizedMotion<N>& motion, double dt_s) requires std::is_same_v<Scalar, double> {
+    State x = x_;
+    Covariance carried = carried_;
+    const bool valid = Form::template across<N>(motion, dt_s, x, carried);
     return commit(valid, x, carried);
   }
 

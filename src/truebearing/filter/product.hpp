@@ -14,13 +14,22 @@ enum class Part { all, lower };
 
 namespace detail {
 
-/// body(0), ..., body(Count - 1) without a loop.
-template <int Count, typename Body>
-EIGEN_ALWAYS_INLINE void unrolled(const Body& body) {
-  [&]<int... I>(std::integer_sequence<int, I...>) __attribute__((always_inline)) {
-    (body(I), ...);
+/// Products of more multiplications than this are loops that the optimiser unrolls, as far as it finds that worth
+/// while: what is written out coefficient by coefficient takes the compiler longer with every one of them.
+inline constexpr int kMostWrittenOut = 64;
+
+/// body(0), ..., body(Count - 1), for a product of `multiplications`.
+template <int Count, int multiplications, typename Body>
+EIGEN_ALWAYS_INLINE void each(const Body& body) {
+  if constexpr (multiplications <= kMostWrittenOut) {
+    [&]<int... I>(std::integer_sequence<int, I...>) __attribute__((always_inline)) {
+      (body(I), ...);
+    }
+    (std::make_integer_sequence<int, Count>());
+  } else {
+#pragma GCC unroll 64
+    for (int i = 0; i < Count; ++i) body(i);
   }
-  (std::make_integer_sequence<int, Count>());
 }
 
 /// A zero that a model never sets. False for whatever is known only at run time.
@@ -42,10 +51,10 @@ template <int Sign, Part part = Part::all, typename Scalar, int Rows, int Inner,
 EIGEN_ALWAYS_INLINE void add_product(const Eigen::Matrix<Scalar, Rows, Inner>& A,
                                      const Eigen::Matrix<Scalar, Inner, Cols>& B,
                                      Eigen::Matrix<Scalar, Rows, Cols>& C) {
-  detail::unrolled<Rows * Cols>([&](int index) __attribute__((always_inline)) {
+  detail::each<Rows * Cols, Rows * Inner * Cols>([&](int index) __attribute__((always_inline)) {
     const int i = index % Rows, j = index / Rows;
     if (part == Part::lower && i < j) return;
-    detail::unrolled<Inner>([&](int k) __attribute__((always_inline)) {
+    detail::each<Inner, Rows * Inner * Cols>([&](int k) __attribute__((always_inline)) {
       if (!detail::is_known_zero(A(i, k)) && !detail::is_known_zero(B(k, j))) C(i, j) += Sign * (A(i, k) * B(k, j));
     });
   });
@@ -56,11 +65,11 @@ template <typename Scalar, int Rows, int Inner, int Cols>
 EIGEN_ALWAYS_INLINE Eigen::Matrix<Scalar, Rows, Cols> product(const Eigen::Matrix<Scalar, Rows, Inner>& A,
                                                               const Eigen::Matrix<Scalar, Inner, Cols>& B) {
   Eigen::Matrix<Scalar, Rows, Cols> C;
-  detail::unrolled<Rows * Cols>([&](int index) __attribute__((always_inline)) {
+  detail::each<Rows * Cols, Rows * Inner * Cols>([&](int index) __attribute__((always_inline)) {
     const int i = index % Rows, j = index / Rows;
     Scalar sum = 0;
     bool empty = true;
-    detail::unrolled<Inner>([&](int k) __attribute__((always_inline)) {
+    detail::each<Inner, Rows * Inner * Cols>([&](int k) __attribute__((always_inline)) {
       if (detail::is_known_zero(A(i, k)) || detail::is_known_zero(B(k, j))) return;
       sum = empty ? A(i, k) * B(k, j) : sum + A(i, k) * B(k, j);
       empty = false;

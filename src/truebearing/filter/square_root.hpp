@@ -13,6 +13,7 @@
 
 #include "truebearing/filter/factorization.hpp"
 #include "truebearing/filter/update.hpp"
+#include "truebearing/motion/any_motion.hpp"
 
 namespace truebearing {
 
@@ -39,6 +40,15 @@ struct SquareRoot {
     triangularize<N, 2 * N, Scalar>(array);
     U = array.template rightCols<N>();
     return is_finite<N, Scalar>(U);
+  }
+
+  /// predict() across a motion whose type is not known here. x becomes f(x).
+  template <int N>
+  static bool across(const SizedMotion<N>& motion, double dt_s, Eigen::Matrix<double, N, 1>& x,
+                     Eigen::Matrix<double, N, N>& U) {
+    const Eigen::Matrix<double, N, N> F = motion.F(x, dt_s);
+    x = motion.f(x, dt_s);
+    return predict<N, double>(F, motion.Q(dt_s), U);
   }
 
   /// False where R is not positive semi-definite, or where S^1/2 has lost its digits: its row i is rotated from terms

@@ -17,6 +17,7 @@
 #include "truebearing/filter/product.hpp"
 #include "truebearing/filter/update.hpp"
 #include "truebearing/measurement/measurement_model.hpp"
+#include "truebearing/motion/any_motion.hpp"
 #include "truebearing/motion/motion_model.hpp"
 
 namespace truebearing {
@@ -65,6 +66,15 @@ class UnscentedKalmanFilter {
     add_squares<N>(d, P);
     detail::mirror_lower<N, Scalar>(P);
     return commit(is_positive_semidefinite<N, Scalar>(P), centre + shift, P);
+  }
+
+  /// The same across a motion whose type is not known here.
+  StepStatus predict(const SizedMotion<N>& motion, double dt_s) requires std::is_same_v<Scalar, double> {
+    if (!motion.is_linear()) return predict<SizedMotion<N>>(motion, dt_s);
+    State x = x_;
+    Covariance P = P_;
+    const bool valid = motion.carry(dt_s, x, P);
+    return commit(valid, x, P);
   }
 
   /// Takes one measurement z (m), over points drawn anew from P. `failed` leaves x and P as they were: z, R or the
@@ -141,8 +151,11 @@ class UnscentedKalmanFilter {
   /// A + sum w d d' into A.
   template <int Rows>
   static void add_squares(const Points<Rows>& d, Eigen::Matrix<Scalar, Rows, Rows>& A) {
-    for (int i = 0; i < kPoints; ++i)
-      A.noalias() += ((i == 0 ? kCentreWeight : kWeight) * d.col(i)) * d.col(i).transpose();
+    for (int i = 0; i < kPoints; ++i) {
+      const Scalar weight = i == 0 ? kCentreWeight : kWeight;
+      for (int col = 0; col < Rows; ++col)
+        for (int row = 0; row < Rows; ++row) A(row, col) += weight * d(row, i) * d(col, i);
+    }
   }
 
   StepStatus commit(bool valid, const State& x, const Covariance& P) {

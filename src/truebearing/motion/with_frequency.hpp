@@ -9,20 +9,37 @@
 
 namespace truebearing {
 
-template <LinearMotionModel Motion>
+template <MotionModel Motion>
 requires(Motion::kStates >= 4) struct WithFrequency {
   using Scalar = typename Motion::Scalar;
   static constexpr int kStates = Motion::kStates + 1;
   static constexpr int kFrequency = 4;  ///< its place
+  using State = Eigen::Matrix<Scalar, kStates, 1>;
   using Matrix = Eigen::Matrix<Scalar, kStates, kStates>;
 
   Motion motion;
   Scalar frequency_q_hz2ps = 0;  ///< q_f, Hz^2/s
 
-  Matrix F(Scalar dt_s) const { return around(motion.F(dt_s), 1); }
+  Matrix F(Scalar dt_s) const requires LinearMotionModel<Motion> { return around(motion.F(dt_s), 1); }
+  /// Of a nonlinear motion.
+  State f(const State& x, Scalar dt_s) const requires NonlinearMotionModel<Motion> {
+    const typename Motion::State next = motion.f(without_frequency(x), dt_s);
+    State whole;
+    whole << next.template head<kFrequency>(), x(kFrequency), next.template tail<kStates - 1 - kFrequency>();
+    return whole;
+  }
+  Matrix F(const State& x, Scalar dt_s) const requires NonlinearMotionModel<Motion> {
+    return around(motion.F(without_frequency(x), dt_s), 1);
+  }
   Matrix Q(Scalar dt_s) const { return around(motion.Q(dt_s), frequency_q_hz2ps * dt_s); }
 
  private:
+  static Eigen::Matrix<Scalar, Motion::kStates, 1> without_frequency(const State& x) {
+    Eigen::Matrix<Scalar, Motion::kStates, 1> rest;
+    rest << x.template head<kFrequency>(), x.template tail<kStates - 1 - kFrequency>();
+    return rest;
+  }
+
   // The motion's matrix with a row and a column for the frequency between its velocities and the rest.
   static Matrix around(const Eigen::Matrix<Scalar, Motion::kStates, Motion::kStates>& A, Scalar frequency) {
     constexpr int rest = Motion::kStates - kFrequency;

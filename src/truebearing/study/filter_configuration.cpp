@@ -1,62 +1,117 @@
 #include "truebearing/study/filter_configuration.hpp"
 
-namespace truebearing {
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+#include <string>
+#include <vector>
 
-PlaneMotion read_plane_motion(TableReader& motion) {
-  const std::string model = motion.choice(
-      "model", {"constant_velocity", "coordinated_turn", "constant_acceleration", "singer", "turning_target"});
-  if (model == "constant_velocity") return VelocityMotion{ConstantVelocity<2, AnyNoise<4>>{read_noise<2>(motion)}};
-  if (model == "coordinated_turn") {
-    const double rate_radps = radians(motion.number("turn_rate_degps", {-90.0, 90.0}));
-    return VelocityMotion{CoordinatedTurn<AnyNoise<4>>{read_noise<2>(motion), rate_radps}};
-  }
-  if (model == "constant_acceleration") {
-    if (motion.choice("noise", {"continuous", "discrete"}) == "continuous")
-      return AccelerationMotion{ConstantAcceleration<2, ContinuousWhiteJerk>{{motion.number("q_m2ps5", kNonNegative)}}};
-    return AccelerationMotion{
-        ConstantAcceleration<2, DiscreteAccelerationStep>{{motion.number("sigma_mps2", kNonNegative)}}};
-  }
-  if (model == "singer")
-    return AccelerationMotion{
-        Singer<2>{motion.number("sigma_a_mps2", kPositive), motion.number("time_constant_s", kPositive)}};
-  const double wander = radians(motion.number("turn_rate_noise_degps2", kNonNegative));
-  return TurnMotion{read_noise<2>(motion), wander};
+#include "truebearing/core/chi_square.hpp"
+#include "truebearing/study/range_prior_configuration.hpp"
+
+namespace truebearing {
+namespace {
+
+// Of the components behind those that a start tells: accelerations or a turn rate.
+double read_rest(TableReader& table, int states, int told) {
+  return states > told ? table.number("rest_sigma", kNonNegative) : 0.0;
 }
 
-std::variant<PlaneSensor, PolarSensor> read_plane_sensor(TableReader& tracker) {
-  TableReader table = tracker.table("measurement");
-  const std::string model = table.choice("model", {"position", "range_bearing", "converted_range_bearing", "bearing"});
-  if (model == "bearing")
-    throw table.error("model", "is \"bearing\", which this kind of tracker does not take",
-                      "a tracker of kind kalman, unscented, modified_gain, log_polar or range_bank");
-  const double factor = table.number_or("sigma_factor", 1.0, kPositive);
-  if (model == "position") {
-    if (table.has("sigma_m") == table.has("variance_m2"))
-      throw table.error("", "has neither or both of sigma_m and variance_m2", "one of the two");
-    const double sigma_m =
-        table.has("sigma_m") ? table.number("sigma_m", kPositive) : std::sqrt(table.number("variance_m2", kPositive));
-    table.finish();
-    return PlaneSensor{{sigma_m, sigma_m}, factor, false, Eigen::Vector2d::Zero()};
-  }
-  const Eigen::Vector2d sigma(table.number("range_sigma_m", kPositive),
-                              radians(table.number("bearing_sigma_deg", {0.0, 90.0, true})));
-  Eigen::Vector2d site_m = Eigen::Vector2d::Zero();
-  if (table.has("site_m")) {
-    const std::vector<double> site = table.numbers("site_m", 2);
-    site_m << site[0], site[1];
+}  // namespace
+
+PriorStart read_prior_start(TableReader& table, int states) {
+  const std::vector<double> x = table.numbers("x", states);
+  const std::vector<double> variance = table.numbers("variance", states, kPositive);
+  PriorStart prior;
+  prior.x = Eigen::Map<const Eigen::VectorXd>(x.data(), states);
+  prior.P = Eigen::Map<const Eigen::VectorXd>(variance.data(), states).asDiagonal();
+  prior.time_s = table.number_or("time_s", 0.0);
+  return prior;
+}
+
+Start read_start(TableReader& tracker, const MeasurementChoice& measurement, int states) {
+  TableReader table = tracker.table("start");
+  std::vector<std::string> kinds{"prior"};
+  if (measurement.sensor->tells_position()) kinds.insert(kinds.end(), {"one_point", "two_point"});
+  if (measurement.sensor->tells_bearing()) kinds.insert(kinds.end(), {"range", "hand_over"});
+  const std::string kind = table.choice("kind", kinds);
+  if (kind == "range") return read_range_prior(tracker.table("start"));
+  Start start;
+  if (kind == "prior") {
+    start = read_prior_start(table, states);
+  } else if (kind == "hand_over") {
+    start = HandOverStart{read_rest(table, states, measurement.leading())};
+  } else if (kind == "one_point") {
+    const double velocity_sigma_mps = table.number("velocity_sigma_mps", kPositive);
+    start = OnePointStart{velocity_sigma_mps, read_rest(table, states, measurement.leading())};
+  } else {
+    start = TwoPointStart{read_rest(table, states, measurement.leading())};
   }
   table.finish();
-  if (model == "range_bearing") return PolarSensor{sigma, factor, site_m};
-  return PlaneSensor{sigma, factor, true, site_m};
+  return start;
 }
 
-FilterTrackerOptions read_options(TableReader& tracker, int measurements) {
+FilterTrackerOptions read_options(TableReader& tracker, const MeasurementChoice& measurement) {
   FilterTrackerOptions options;
   if (tracker.has("gate_probability"))
-    options.gate_nis = chi_square_quantile(tracker.number("gate_probability", {0.5, 1.0 - 1e-12}), measurements);
+    options.gate_nis =
+        chi_square_quantile(tracker.number("gate_probability", {0.5, 1.0 - 1e-12}), measurement.sensor->size());
   options.lost_after_s = tracker.number_or("lost_after_s", std::numeric_limits<double>::infinity(), kPositive);
   options.output_pull = tracker.number_or("output_pull", 0.0, {0.0, 1.0});
+  if (options.output_pull > 0.0 && !measurement.sensor->measures_position())
+    throw tracker.error("output_pull", "needs measured positions", "0, or model = \"converted_range_bearing\"");
   return options;
+}
+
+MarkovChain read_chain(TableReader& tracker, int modes) {
+  constexpr double kRounding = 1e-6;
+  constexpr Range kProbability{0.0, 1.0};
+  TableReader table = tracker.table("transition");
+  const double period_s = table.number("period_s", kPositive);
+  MarkovChain chain;
+  if (table.has("matrix")) {
+    const std::vector<double> numbers = table.numbers("matrix", modes * modes, kProbability);
+    chain.transition = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
+        numbers.data(), modes, modes);
+    for (Eigen::Index i = 0; i < modes; ++i)
+      if (std::abs(chain.transition.row(i).sum() - 1.0) > kRounding)
+        throw table.error("matrix", fmt::format("has a row {} that does not sum to 1", i + 1), "probabilities");
+    chain.initial = ModeVector::Constant(modes, 1.0 / modes);
+    chain.period_s = period_s;
+  } else {
+    chain = star_chain(modes, table.number("leave_first", kProbability), table.number("leave_other", kProbability),
+                       modes > 2 ? table.number("to_first", kProbability) : 1.0, period_s);
+  }
+  if (tracker.has("initial")) {
+    const std::vector<double> initial = tracker.numbers("initial", modes, kProbability);
+    chain.initial = Eigen::Map<const Eigen::VectorXd>(initial.data(), modes);
+    if (std::abs(chain.initial.sum() - 1.0) > kRounding)
+      throw tracker.error("initial", "does not sum to 1", "probabilities");
+  }
+  table.finish();
+  return chain;
+}
+
+RangeHypotheses read_range_hypotheses(TableReader& table) {
+  constexpr int kMost = 10000;
+  RangeHypotheses hypotheses{read_range_prior(table.table("start"))};
+  hypotheses.ranges = static_cast<int>(table.integer("ranges", 1, kMost));
+  hypotheses.velocity_cells = static_cast<int>(table.integer_or("velocity_cells", 1, 1, 360));
+  hypotheses.least_range_m = table.number_or("least_range_m", 0.0, kNonNegative);
+  if (hypotheses.velocity_cells == 2 || (hypotheses.velocity_cells > 2 && hypotheses.prior.course))
+    throw table.error("velocity_cells", fmt::format("is {}", hypotheses.velocity_cells),
+                      hypotheses.prior.course ? "1 beside a course" : "1, or 3 and more sectors");
+  if (table.has("speed_between_mps")) {
+    const std::vector<double> speeds = table.numbers("speed_between_mps", 2, kNonNegative);
+    if (speeds[0] >= speeds[1] || hypotheses.velocity_cells == 1)
+      throw table.error("speed_between_mps",
+                        hypotheses.velocity_cells == 1 ? "stands beside one velocity cell" : "is empty",
+                        "[low, high] with low < high, beside velocity_cells");
+    hypotheses.speed_between_mps = {speeds[0], speeds[1]};
+  }
+  if (hypotheses.size() > kMost)
+    throw table.error("ranges", fmt::format("makes a bank of {}", hypotheses.size()), fmt::format("1 to {}", kMost));
+  return hypotheses;
 }
 
 }  // namespace truebearing

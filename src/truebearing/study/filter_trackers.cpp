@@ -1,119 +1,163 @@
 #include "truebearing/study/filter_trackers.hpp"
 
 #include <cmath>
-#include <limits>
+#include <fmt/format.h>
+#include <map>
+#include <string>
 #include <utility>
-#include <variant>
+#include <vector>
 
-#include "truebearing/filter/kalman.hpp"
-#include "truebearing/study/bearing_trackers.hpp"
+#include "truebearing/filter/filter_kinds.hpp"
+#include "truebearing/filter/interacting_multiple_model.hpp"
 #include "truebearing/study/filter_configuration.hpp"
-#include "truebearing/study/plane_filters.hpp"
+#include "truebearing/study/measurement_kinds.hpp"
+#include "truebearing/study/motion_kinds.hpp"
 #include "truebearing/tracker/filter_bank.hpp"
+#include "truebearing/tracker/range_bank.hpp"
 #include "truebearing/tracker/raw_tracker.hpp"
 #include "truebearing/tracker/recorded_tracker.hpp"
 
 namespace truebearing {
 namespace {
 
-using LineMotion = ConstantVelocity<1, AnyNoise<2>>;
-
-LineMotion read_line_motion(TableReader& tracker) {
-  TableReader table = tracker.table("motion");
-  table.choice("model", {"constant_velocity"});
-  const LineMotion motion{read_noise<1>(table)};
-  table.finish();
-  return motion;
+MotionLayout read_layout(TableReader& tracker, const MeasurementChoice& measurement) {
+  MotionLayout layout{measurement.dimensions(), measurement.has_frequency};
+  if (layout.has_frequency) layout.frequency_q_hz2ps = tracker.number_or("frequency_q_hz2ps", 0.0, kNonNegative);
+  return layout;
 }
 
-PositionSensor<1> read_line_sensor(TableReader& tracker) {
-  TableReader table = tracker.table("measurement");
-  table.choice("model", {"position"});
-  PositionSensor<1> sensor;
-  if (table.has("sigma_m") == table.has("variance_m2"))
-    throw table.error("", "has neither or both of sigma_m and variance_m2", "one of the two");
-  sensor.sigma_m.setConstant(table.has("sigma_m") ? table.number("sigma_m", kPositive)
-                                                  : std::sqrt(table.number("variance_m2", kPositive)));
-  sensor.sigma_factor = table.number_or("sigma_factor", 1.0, kPositive);
-  table.finish();
-  return sensor;
+// What the filters ask of measurements beyond a Jacobian.
+void check_filter(const TableReader& tracker, const std::string& key, FilterKind filter,
+                  const MeasurementChoice& measurement) {
+  const bool bearings = measurement.sensor->tells_bearing();
+  if (filter == FilterKind::modified_gain && !bearings)
+    throw tracker.error(key, "is \"modified_gain\", which \"" + measurement.model + "\" has none of",
+                        "measurement.model = \"bearing\" or \"bearing_frequency\"");
+  if (filter == FilterKind::log_polar && (!bearings || measurement.has_frequency))
+    throw tracker.error(key, "is \"log_polar\", whose coordinates \"" + measurement.model + "\" does not suit",
+                        "measurement.model = \"bearing\"");
 }
 
-// The hypotheses of a bank on the process noise: its covariance times `factor`.
-ContinuousWhiteNoise scaled(ContinuousWhiteNoise noise, double factor) {
-  return {noise.q * factor};
+std::unique_ptr<TrackedState> state_under(const TableReader& tracker, FilterKind filter,
+                                          const std::shared_ptr<const AnyMotion>& motion) {
+  std::unique_ptr<TrackedState> state = make_filter_state(filter, motion);
+  if (!state)
+    throw tracker.error("motion", fmt::format("has a state of {} components, which this filter does not take",
+                                              motion->states()),
+                        filter == FilterKind::log_polar ? "constant_velocity or coordinated_turn" : "2 to 7");
+  return state;
 }
-DiscreteWhiteNoise scaled(DiscreteWhiteNoise noise, double factor) {
-  return {noise.sigma_a * std::sqrt(factor)};
+
+std::unique_ptr<Tracker> filter_tracker(TableReader& tracker, std::unique_ptr<TrackedState> state,
+                                        MeasurementChoice measurement) {
+  const Start start = read_start(tracker, measurement, state->size());
+  const FilterTrackerOptions options = read_options(tracker, measurement);
+  return std::make_unique<FilterTracker>(*measurement.space, std::move(state), std::move(measurement.sensor), start,
+                                         options);
 }
-template <int N>
-FixedNoise<N> scaled(FixedNoise<N> noise, double factor) {
-  noise.Q_per_step *= factor;
-  return noise;
+
+std::unique_ptr<Tracker> one_filter(TableReader& tracker, FilterKind filter) {
+  MeasurementChoice measurement = read_measurement(tracker);
+  check_filter(tracker, "kind", filter, measurement);
+  const auto motion = read_motion(tracker.table("motion"), read_layout(tracker, measurement));
+  return filter_tracker(tracker, state_under(tracker, filter, motion), std::move(measurement));
 }
-template <int N>
-AnyNoise<N> scaled(const AnyNoise<N>& any, double factor) {
-  return std::visit([&](const auto& noise) { return AnyNoise<N>{scaled(noise, factor)}; }, any.noise);
+
+// filter = "kalman" | ...: of the modes of a multiple model, or the members of a bank.
+FilterKind read_filter(TableReader& tracker, const MeasurementChoice& measurement, bool required,
+                       std::vector<std::string> kinds) {
+  const std::map<std::string, FilterKind> known{{"kalman", FilterKind::kalman},
+                                                {"unscented", FilterKind::unscented},
+                                                {"modified_gain", FilterKind::modified_gain},
+                                                {"log_polar", FilterKind::log_polar}};
+  const FilterKind filter =
+      known.at(required ? tracker.choice("filter", kinds) : tracker.choice_or("filter", kinds, "kalman"));
+  check_filter(tracker, "filter", filter, measurement);
+  return filter;
 }
 
 }  // namespace
 
 std::unique_ptr<Tracker> make_kalman_tracker(TableReader& table) {
-  if (measures_frequencies(table)) return make_frequency_kalman(table);
-  if (measures_bearings(table)) return make_bearing_kalman(table);
-  if (table.choice_or("space", {"line", "plane"}, "line") == "plane") return make_plane_kalman(table);
-  const LineMotion motion = read_line_motion(table);
-  const auto make = [&](auto form) -> std::unique_ptr<Tracker> {
-    return std::make_unique<FilterTracker<KalmanFilter<2, decltype(form)>, LineMotion, PositionSensor<1>>>(
-        line_space(), motion, read_line_sensor(table), read_start<2, 1>(table), read_options(table, 1));
-  };
   const std::string form = table.choice_or("form", {"joseph", "square_root", "conventional"}, "joseph");
-  if (form == "square_root") return make(SquareRoot{});
-  if (form == "conventional") return make(Conventional{});
-  return make(Joseph{});
+  if (form == "square_root") return one_filter(table, FilterKind::square_root);
+  if (form == "conventional") return one_filter(table, FilterKind::conventional);
+  return one_filter(table, FilterKind::kalman);
 }
 
-std::unique_ptr<Tracker> make_unscented_tracker(TableReader& table) {
-  if (measures_frequencies(table)) return make_frequency_unscented(table);
-  if (measures_bearings(table)) return make_bearing_unscented(table);
-  table.choice("space", {"plane"});
-  return make_plane_unscented(table);
+std::unique_ptr<Tracker> make_unscented_tracker(TableReader& table) { return one_filter(table, FilterKind::unscented); }
+
+std::unique_ptr<Tracker> make_modified_gain_tracker(TableReader& table) {
+  return one_filter(table, FilterKind::modified_gain);
 }
+
+std::unique_ptr<Tracker> make_log_polar_tracker(TableReader& table) { return one_filter(table, FilterKind::log_polar); }
 
 std::unique_ptr<Tracker> make_multiple_model_tracker(TableReader& table) {
-  if (measures_frequencies(table)) return make_frequency_multiple_model(table);
-  if (measures_bearings(table)) return make_bearing_multiple_model(table);
-  table.choice("space", {"plane"});
-  return make_interacting_multiple_model(table);
+  MeasurementChoice measurement = read_measurement(table);
+  const AnyMotions motions = read_modes(table, read_layout(table, measurement));
+  const MarkovChain chain = read_chain(table, static_cast<int>(motions.size()));
+  const FilterKind filter = read_filter(table, measurement, false, {"kalman", "unscented", "modified_gain"});
+  InteractingMultipleModel::Modes modes;
+  for (const auto& motion : motions) modes.push_back(state_under(table, filter, motion));
+  return filter_tracker(table, std::make_unique<InteractingMultipleModel>(std::move(modes), chain),
+                        std::move(measurement));
 }
 
 std::unique_ptr<Tracker> make_kalman_bank(TableReader& table) {
-  using Bank = FilterBank<KalmanFilter<2>, LineMotion, PositionSensor<1>>;
-  const LineMotion motion = read_line_motion(table);
-  const PositionSensor<1> sensor = read_line_sensor(table);
-  TableReader start = table.table("start");
-  const std::vector<double> x0 = start.numbers("x", 2);
-  const std::vector<double> variance = start.numbers("variance", 2, kPositive);
-  const double start_time_s = start.number_or("time_s", 0.0);
-  start.finish();
-  const Eigen::Matrix2d P0 = Eigen::Vector2d(variance[0], variance[1]).asDiagonal();
+  constexpr std::size_t kMost = 100000;
+  const MeasurementChoice measurement = read_measurement(table);
+  const FilterKind filter = read_filter(table, measurement, false, {"kalman", "unscented", "modified_gain"});
+  const int d = measurement.dimensions();
   const std::vector<double> velocities = table.numbers("prior_velocities_mps");
   const std::vector<double> variance_factors = table.numbers("measurement_variance_factors", -1, kPositive);
   const std::vector<double> noise_factors = table.numbers("process_noise_factors", -1, kPositive);
+  const std::size_t supposed = velocities.size() / static_cast<std::size_t>(d);
+  const std::size_t filters = supposed * variance_factors.size() * noise_factors.size();
+  if (velocities.size() % static_cast<std::size_t>(d) != 0)
+    throw table.error("prior_velocities_mps", fmt::format("has {} numbers", velocities.size()), "pairs: East, North");
+  if (filters == 0 || filters > kMost)
+    throw table.error("prior_velocities_mps", "makes a bank of " + std::to_string(filters), "1 to 100000 filters");
 
-  std::vector<Bank::Hypothesis> hypotheses;
-  for (const double velocity_mps : velocities)
-    for (const double variance_factor : variance_factors)
-      for (const double noise_factor : noise_factors) {
-        PositionSensor<1> believed = sensor;
-        believed.sigma_factor *= std::sqrt(variance_factor);
-        hypotheses.push_back({KalmanFilter<2>(Eigen::Vector2d(x0[0], velocity_mps), P0),
-                              LineMotion{scaled(motion.noise, noise_factor)}, believed});
+  AnyMotions motions;
+  MotionLayout layout = read_layout(table, measurement);
+  for (const double factor : noise_factors) {
+    layout.process_noise_factor = factor;
+    motions.push_back(read_motion(table.table("motion"), layout));
+  }
+  std::vector<std::unique_ptr<AnySensor>> sensors;
+  for (const double factor : variance_factors)
+    sensors.push_back(read_measurement(table, std::sqrt(factor)).sensor);
+
+  TableReader start = table.table("start");
+  start.choice_or("kind", {"prior"}, "prior");
+  const PriorStart prior = read_prior_start(start, motions.front()->states());
+  start.finish();
+  std::vector<FilterBank::Hypothesis> hypotheses;
+  std::vector<std::size_t> motion_of;
+  for (std::size_t v = 0; v < supposed; ++v)
+    for (std::size_t s = 0; s < sensors.size(); ++s)
+      for (std::size_t m = 0; m < motions.size(); ++m) {
+        FilterBank::Hypothesis hypothesis{prior.x, prior.P, s, 0.0};
+        for (int i = 0; i < d; ++i) hypothesis.x[d + i] = velocities[v * static_cast<std::size_t>(d) + std::size_t(i)];
+        hypotheses.push_back(hypothesis);
+        motion_of.push_back(m);
       }
-  if (hypotheses.empty() || hypotheses.size() > 100000)
-    throw table.error("prior_velocities_mps", "makes a bank of " + std::to_string(hypotheses.size()),
-                      "1 to 100000 filters");
-  return std::make_unique<Bank>(line_space(), std::move(hypotheses), start_time_s);
+  return std::make_unique<FilterBank>(*measurement.space, make_filter_group(filter, motions, motion_of),
+                                      std::move(sensors), std::move(hypotheses), prior.time_s);
+}
+
+std::unique_ptr<Tracker> make_range_bank(TableReader& table) {
+  MeasurementChoice measurement = read_measurement(table);
+  if (!measurement.sensor->tells_bearing())
+    throw table.error("kind", "is \"range_bank\", which supposes what bearings do not tell",
+                      "measurement.model = \"bearing\" or \"bearing_frequency\"");
+  const auto motion = read_motion(table.table("motion"), read_layout(table, measurement));
+  const RangeHypotheses hypotheses = read_range_hypotheses(table);
+  const FilterKind filter =
+      read_filter(table, measurement, true, {"kalman", "unscented", "log_polar", "modified_gain"});
+  static_cast<void>(state_under(table, filter, motion));
+  return range_bank(*measurement.space, filter, motion, std::move(measurement.sensor), hypotheses);
 }
 
 std::unique_ptr<Tracker> make_raw_tracker(TableReader& table) {

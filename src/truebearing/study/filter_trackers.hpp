@@ -11,8 +11,11 @@ namespace truebearing {
 
 std::unique_ptr<Tracker> make_kalman_tracker(TableReader& table);
 std::unique_ptr<Tracker> make_unscented_tracker(TableReader& table);
+std::unique_ptr<Tracker> make_modified_gain_tracker(TableReader& table);
+std::unique_ptr<Tracker> make_log_polar_tracker(TableReader& table);
 std::unique_ptr<Tracker> make_multiple_model_tracker(TableReader& table);
 std::unique_ptr<Tracker> make_kalman_bank(TableReader& table);
+std::unique_ptr<Tracker> make_range_bank(TableReader& table);
 std::unique_ptr<Tracker> make_raw_tracker(TableReader& table);
 std::unique_ptr<Tracker> make_recorded_tracker(TableReader& table);
 

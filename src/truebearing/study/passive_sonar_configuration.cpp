@@ -1,7 +1,7 @@
 #include "truebearing/study/passive_sonar_configuration.hpp"
 
 #include "truebearing/core/chi_square.hpp"
-#include "truebearing/study/bearing_trackers.hpp"
+#include "truebearing/study/measurement_kinds.hpp"
 #include "truebearing/study/tracker_registry.hpp"
 #include "truebearing/tracker/passive_sonar_tracker.hpp"
 
@@ -32,7 +32,7 @@ std::unique_ptr<Tracker> make_passive_sonar_tracker(TableReader& table) {
   options.manoeuvre_mps = table.number_or("manoeuvre_mps", options.manoeuvre_mps, kNonNegative);
   options.steady_probability = table.number_or("steady_probability", options.steady_probability, {0.0, 1.0});
   options.show_batch = table.boolean_or("show_batch", options.show_batch);
-  if (measures_frequencies(table)) options.sensor = read_bearing_frequency_sensor(table);
+  if (measures(table, "bearing_frequency")) options.sensor = read_bearing_frequency_sensor(table);
 
   std::unique_ptr<Tracker> batch = make_part(table, "batch", toml::table{{"kind", "bearings_batch"}, {"method", "ml"}});
   std::unique_ptr<Tracker> filter =

@@ -8,7 +8,6 @@
 #include "truebearing/core/suggestion.hpp"
 #include "truebearing/study/angle_trackers.hpp"
 #include "truebearing/study/batch_trackers.hpp"
-#include "truebearing/study/bearing_trackers.hpp"
 #include "truebearing/study/filter_trackers.hpp"
 #include "truebearing/study/passive_sonar_configuration.hpp"
 

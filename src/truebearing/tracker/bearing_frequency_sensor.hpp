@@ -1,4 +1,4 @@
-// A sensor of bearings and Doppler-shifted frequencies, as the FilterTracker wants it: where the measurement says that
+// A sensor of bearings and Doppler-shifted frequencies, (any_sensor.hpp): where the measurement says that
 // its sensor was. z = [bearing_rad, frequency_hz], either missing, or the bearing alone. The measurement's own standard
 // deviations hold where it carries them, else the sensor's; either is multiplied by sigma_factor.
 #pragma once
@@ -8,9 +8,10 @@
 #include <optional>
 
 #include "truebearing/measurement/bearing_frequency.hpp"
+#include "truebearing/measurement/measured.hpp"
 #include "truebearing/measurement/measurement.hpp"
 #include "truebearing/tma/range_prior.hpp"
-#include "truebearing/tracker/start.hpp"
+#include "truebearing/tracker/any_sensor.hpp"
 
 namespace truebearing {
 
@@ -48,10 +49,16 @@ struct BearingFrequencySensor {
     return z;
   }
 
+  Measured measured() const { return Measured::bearing_frequency(); }
+  Sight sight(const Measurement& measurement) const {
+    const Model model = this->model(measurement);
+    return {value(measurement)[0], model.sigma_rad, {model.site_m, model.site_velocity_mps}};
+  }
+
   /// What is believed of the plane with the frequency that the measurement lets one believe in:
   /// f0 = f (1 + v_r / c), as uncertain as f and, together with the velocity, as v_r. Nothing where it has no
   /// frequency.
-  std::optional<PriorStart<5>> start(const GaussianState& plane, const Measurement& measurement) const {
+  std::optional<PriorStart> believe(const GaussianState& plane, const Measurement& measurement) const {
     const Model model = this->model(measurement);
     if (!model.has_bearing || !model.has_frequency) return std::nullopt;
     const Model::Vector z = value(measurement);
@@ -59,11 +66,11 @@ struct BearingFrequencySensor {
     const double per_mps = z(1) / sound_mps;
     Eigen::Matrix<double, 5, 4> T = Eigen::Matrix<double, 5, 4>::Identity();
     T.block<1, 2>(4, 2) = per_mps * u.transpose();
-    PriorStart<5> start;
-    start.x << plane.x, z(1) + per_mps * u.dot(plane.x.tail<2>() - model.site_velocity_mps);
-    start.P = T * plane.P * T.transpose();
-    start.P(4, 4) += model.sigma_hz * model.sigma_hz;
-    return start;
+    Eigen::Matrix<double, 5, 1> x;
+    x << plane.x, z(1) + per_mps * u.dot(plane.x.tail<2>() - model.site_velocity_mps);
+    Eigen::Matrix<double, 5, 5> P = T * plane.P * T.transpose();
+    P(4, 4) += model.sigma_hz * model.sigma_hz;
+    return PriorStart{x, P};
   }
 };
 

@@ -1,4 +1,4 @@
-// A sensor of bearings, as the FilterTracker wants it: where the measurement says that its sensor was, at the origin
+// A sensor of bearings (any_sensor.hpp): where the measurement says that its sensor was, at the origin
 // and at rest where it does not say. A frequency behind the bearing is left alone. The measurement's own standard
 // deviation holds where it carries one, else the sensor's; either is multiplied by sigma_factor.
 #pragma once
@@ -7,9 +7,10 @@
 #include <optional>
 
 #include "truebearing/measurement/bearing.hpp"
+#include "truebearing/measurement/measured.hpp"
 #include "truebearing/measurement/measurement.hpp"
 #include "truebearing/tma/range_prior.hpp"
-#include "truebearing/tracker/start.hpp"
+#include "truebearing/tracker/any_sensor.hpp"
 
 namespace truebearing {
 
@@ -29,9 +30,14 @@ struct BearingSensor {
     return (measurement.z.size() == 1 || measurement.z.size() == 2) && std::isfinite(measurement.z[0]);
   }
   Model::Vector value(const Measurement& measurement) const { return measurement.z.head<1>(); }
+  Measured measured() const { return Measured::bearing(); }
+  Sight sight(const Measurement& measurement) const {
+    const Model model = this->model(measurement);
+    return {measurement.z[0], model.sigma_rad, {model.site_m, model.site_velocity_mps}};
+  }
   /// What is believed of the plane is all that it needs.
-  std::optional<PriorStart<4>> start(const GaussianState& plane, const Measurement&) const {
-    return PriorStart<4>{plane.x, plane.P};
+  std::optional<PriorStart> believe(const GaussianState& plane, const Measurement&) const {
+    return PriorStart{plane.x, plane.P};
   }
 };
 

@@ -1,12 +1,14 @@
-// Sensors of a target in the plane [east, north, v_east, v_north], as the FilterTracker wants them. The measurement's
+// Sensors of a target in the plane [east, north, v_east, v_north] (any_sensor.hpp). The measurement's
 // own standard deviations hold where it carries them, else the sensor's; either is multiplied by sigma_factor.
 #pragma once
 
 #include <Eigen/Core>
 
 #include "truebearing/measurement/cartesian_position.hpp"
+#include "truebearing/measurement/measured.hpp"
 #include "truebearing/measurement/measurement.hpp"
 #include "truebearing/measurement/range_bearing.hpp"
+#include "truebearing/tracker/start.hpp"
 
 namespace truebearing {
 
@@ -28,6 +30,8 @@ struct PlaneSensor {
   Eigen::Vector2d value(const Measurement& measurement) const {
     return is_polar ? converted(measurement).position_m : Eigen::Vector2d(measurement.z);
   }
+  Measured measured() const { return is_polar ? Measured::range_bearing() : Measured::position(2); }
+  PositionFix fix(const Measurement& measurement) const { return {value(measurement), model(measurement).R()}; }
 
  private:
   Eigen::Vector2d scaled(const Measurement& measurement) const {
@@ -56,6 +60,11 @@ struct PolarSensor {
     return {measurement.sensor ? measurement.sensor->position_m : site_m, s[0], s[1]};
   }
   Eigen::Vector2d value(const Measurement& measurement) const { return measurement.z; }
+  Measured measured() const { return Measured::range_bearing(); }
+  /// Converted, as PlaneSensor does.
+  PositionFix fix(const Measurement& measurement) const {
+    return PlaneSensor{sigma, sigma_factor, true, site_m}.fix(measurement);
+  }
 };
 
 }  // namespace truebearing

@@ -1,8 +1,10 @@
-// Sensors as the FilterTracker wants them: from one measurement to the measurement model of the step.
+// A sensor of positions (any_sensor.hpp).
 #pragma once
 
+#include "truebearing/measurement/measured.hpp"
 #include "truebearing/measurement/measurement.hpp"
 #include "truebearing/measurement/position.hpp"
+#include "truebearing/tracker/start.hpp"
 
 namespace truebearing {
 
@@ -22,6 +24,8 @@ struct PositionSensor {
                                                : Sigma(sigma_factor * sigma_m)};
   }
   Sigma value(const Measurement& measurement) const { return measurement.z; }
+  Measured measured() const { return Measured::position(D); }
+  PositionFix fix(const Measurement& measurement) const { return {value(measurement), model(measurement).R()}; }
 };
 
 }  // namespace truebearing

@@ -3,37 +3,17 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
-#include "truebearing/tracker/filter_bank.hpp"
+#include "truebearing/filter/filter_kinds.hpp"
+#include "truebearing/tracker/any_sensor.hpp"
 #include "truebearing/tracker/range_hypotheses.hpp"
+#include "truebearing/tracker/tracker.hpp"
 
 namespace truebearing {
 
-template <typename Filter, typename Motion, typename Sensor>
-std::unique_ptr<Tracker> range_bank(const StateSpace& space, const Motion& motion, const Sensor& sensor,
-                                    const RangeHypotheses& hypotheses) {
-  using Bank = FilterBank<Filter, Motion, Sensor>;
-  using Hypothesis = typename Bank::Hypothesis;
-  const auto suppose = [hypotheses, sensor](const Measurement& first, const std::optional<TargetGuess>& guess,
-                                            std::span<Hypothesis> bank) {
-    if (!hypotheses.prior.suffices_with(guess)) return false;
-    const auto model = sensor.model(first);
-    const SensorState seen_from{model.site_m, model.site_velocity_mps};
-    for (std::size_t i = 0; i < bank.size(); ++i) {
-      const RangeHypotheses::Weighted weighted =
-          hypotheses.at(static_cast<int>(i), sensor.value(first)[0], model.sigma_rad, seen_from, guess);
-      const auto start = sensor.start(weighted.state, first);
-      if (!start) return false;
-      bank[i].start = Filter(start->x, start->P);
-      bank[i].log_weight = weighted.log_weight;
-      if (!bank[i].start.x().allFinite() || !bank[i].start.P().allFinite()) return false;
-    }
-    return true;
-  };
-  const Hypothesis unset{Filter(Filter::State::Zero(), Filter::Covariance::Identity()), motion, sensor};
-  return std::make_unique<Bank>(space, std::vector<Hypothesis>(static_cast<std::size_t>(hypotheses.size()), unset),
-                                suppose);
-}
+/// Nothing where the kind of filter is not compiled for the motion's states.
+std::unique_ptr<Tracker> range_bank(const StateSpace& space, FilterKind filter,
+                                    const std::shared_ptr<const AnyMotion>& motion, std::unique_ptr<AnySensor> sensor,
+                                    const RangeHypotheses& hypotheses);
 
 }  // namespace truebearing

@@ -1,0 +1,151 @@
+// One measurement with the model of its step, whose type is not known when the filter is compiled, only the length m of
+// z: what filters behind trackers reach a study's choice through. z and R are plain data; h, H and the residual are
+// virtual, except of measured positions, for which the filter knows them.
+#pragma once
+
+#include <Eigen/Core>
+#include "truebearing/core/bounded.hpp"
+#include "truebearing/measurement/measurement_model.hpp"
+
+namespace truebearing {
+
+inline constexpr int kMaxMeasurements = 3;  ///< m that filters behind trackers are compiled for
+
+/// A measurement of any length.
+class AnyMeasurement {
+ public:
+  virtual ~AnyMeasurement() = default;
+
+  int size() const { return size_; }        ///< m
+  int leading() const { return leading_; }  ///< k: it looks at the first k components of a state
+  /// z = x_1..m + v: H = [I, 0].
+  bool is_position() const { return is_position_; }
+  Eigen::Map<const BoundedVector> value() const { return {z_, size_}; }               ///< z (m)
+  Eigen::Map<const BoundedMatrix> covariance() const { return {R_, size_, size_}; }  ///< R (m x m)
+
+ protected:
+  AnyMeasurement(int size, int leading, bool is_position, const double* z, const double* R)
+      : size_(size), leading_(leading), is_position_(is_position), z_(z), R_(R) {}
+  AnyMeasurement(const AnyMeasurement&) = delete;
+  AnyMeasurement& operator=(const AnyMeasurement&) = delete;
+
+ private:
+  int size_;
+  int leading_;
+  bool is_position_;
+  const double* z_;
+  const double* R_;
+};
+
+/// A measurement of length M. `x` points to a state of at least leading() components.
+template <int M>
+class SizedMeasurement : public AnyMeasurement {
+ public:
+  using Vector = Eigen::Matrix<double, M, 1>;
+  using Covariance = Eigen::Matrix<double, M, M>;
+
+  Vector z;
+  Covariance R;
+
+  virtual Vector h(const double* x) const = 0;
+  /// The first leading() columns of H or g (m x k), by columns; the others are zero.
+  virtual void H(const double* x, double* jacobian) const = 0;
+  /// H of a model without a modified gain.
+  virtual void modified_gain(const double* x, double* g) const = 0;
+  virtual Vector residual(const Vector& a, const Vector& b) const = 0;
+
+ protected:
+  SizedMeasurement(int leading, bool is_position)
+      : AnyMeasurement(M, leading, is_position, z.data(), R.data()), z(Vector::Zero()), R(Covariance::Identity()) {}
+};
+
+/// A measurement with a model of a known type. z, R and the model belong together: set() makes them so.
+template <MeasurementModel Model>
+class ErasedMeasurement final : public SizedMeasurement<Model::kMeasurements> {
+  static constexpr int M = Model::kMeasurements;
+  using State = Eigen::Matrix<double, Model::kStates, 1>;
+  using Jacobian = Eigen::Matrix<double, M, Model::kStates>;
+
+ public:
+  using typename SizedMeasurement<M>::Vector;
+
+  ErasedMeasurement(const Model& model, const Vector& value, bool is_position = false)
+      : SizedMeasurement<M>(Model::kStates, is_position) {
+    set(model, value);
+  }
+  void set(const Model& model, const Vector& value) {
+    model_ = model;
+    this->z = value;
+    this->R = model_.R();
+  }
+
+  Vector h(const double* x) const override { return model_.h(state(x)); }
+  void H(const double* x, double* jacobian) const override {
+    Eigen::Map<Jacobian> filled(jacobian);
+    filled = model_.H(state(x));
+  }
+  void modified_gain(const double* x, double* g) const override {
+    Eigen::Map<Jacobian> filled(g);
+    if constexpr (requires { model_.modified_gain(this->z, state(x)); })
+      filled = model_.modified_gain(this->z, state(x));
+    else
+      filled = model_.H(state(x));
+  }
+  Vector residual(const Vector& a, const Vector& b) const override { return model_.residual(a, b); }
+
+  const Model& model() const { return model_; }
+
+ private:
+  static State state(const double* x) { return State(Eigen::Map<const State>(x)); }
+
+  Model model_{};
+};
+
+/// A measurement as a measurement model of a state of N components, for the templates.
+template <int N, int M>
+struct MeasurementOn {
+  using Scalar = double;
+  static constexpr int kStates = N;
+  static constexpr int kMeasurements = M;
+  using State = Eigen::Matrix<double, N, 1>;
+  using Vector = Eigen::Matrix<double, M, 1>;
+  using Jacobian = Eigen::Matrix<double, M, N>;
+  using Covariance = Eigen::Matrix<double, M, M>;
+
+  const SizedMeasurement<M>& measurement;
+
+  Vector h(const State& x) const { return measurement.h(x.data()); }
+  Jacobian H(const State& x) const {
+    Jacobian jacobian = Jacobian::Zero();
+    measurement.H(x.data(), jacobian.data());
+    return jacobian;
+  }
+  Jacobian modified_gain(const Vector&, const State& x) const {
+    Jacobian g = Jacobian::Zero();
+    measurement.modified_gain(x.data(), g.data());
+    return g;
+  }
+  const Covariance& R() const { return measurement.R; }
+  Vector residual(const Vector& a, const Vector& b) const { return measurement.residual(a, b); }
+};
+
+/// The same of a measured position, whose H = [I, 0] the compiler knows.
+template <int N, int M>
+struct PositionOn {
+  using Scalar = double;
+  static constexpr int kStates = N;
+  static constexpr int kMeasurements = M;
+  using State = Eigen::Matrix<double, N, 1>;
+  using Vector = Eigen::Matrix<double, M, 1>;
+  using Jacobian = Eigen::Matrix<double, M, N>;
+  using Covariance = Eigen::Matrix<double, M, M>;
+
+  const Covariance& covariance;
+
+  Vector h(const State& x) const { return x.template head<M>(); }
+  Jacobian H(const State&) const { return Jacobian::Identity(); }
+  const Covariance& R() const { return covariance; }
+  Vector residual(const Vector& a, const Vector& b) const { return a - b; }
+};
+
+}  // namespace truebearing

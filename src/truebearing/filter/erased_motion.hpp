@@ -1,0 +1,62 @@
+// A motion model of a known type behind the run-time interface. Its structure stays known to the compiler here: the
+// zeros of its F and Q cost nothing (product.hpp), whatever filter uses it.
+#pragma once
+
+#include <memory>
+#include <string_view>
+#include <utility>
+
+#include "truebearing/filter/covariance_form.hpp"
+#include "truebearing/filter/product.hpp"
+#include "truebearing/motion/any_motion.hpp"
+#include "truebearing/motion/motion_model.hpp"
+
+namespace truebearing {
+
+template <MotionModel Model>
+class ErasedMotion final : public SizedMotion<Model::kStates> {
+  static constexpr int N = Model::kStates;
+
+ public:
+  using typename SizedMotion<N>::State;
+  using typename SizedMotion<N>::Matrix;
+
+  explicit ErasedMotion(Model model, std::string_view rest = {})
+      : SizedMotion<N>(LinearMotionModel<Model>, rest), model_(std::move(model)) {}
+
+  State f(const State& x, double dt_s) const override {
+    if constexpr (LinearMotionModel<Model>)
+      return product(Matrix(model_.F(dt_s)), x);
+    else
+      return model_.f(x, dt_s);
+  }
+  Matrix F(const State& x, double dt_s) const override { return jacobian(x, dt_s); }
+  Matrix Q(double dt_s) const override { return model_.Q(dt_s); }
+
+  bool carry(double dt_s, State& x, Matrix& P) const override {
+    const Matrix F = jacobian(x, dt_s);
+    if constexpr (LinearMotionModel<Model>)
+      x = product(F, State(x));
+    else
+      x = model_.f(State(x), dt_s);
+    return detail::CovarianceForm::predict<N, double>(F, model_.Q(dt_s), P);
+  }
+
+ private:
+  EIGEN_ALWAYS_INLINE Matrix jacobian(const State& x, double dt_s) const {
+    if constexpr (LinearMotionModel<Model>)
+      return model_.F(dt_s);
+    else
+      return model_.F(x, dt_s);
+  }
+
+  Model model_;
+};
+
+/// `model` behind the run-time interface; rest: AnyMotion::rest().
+template <MotionModel Model>
+std::shared_ptr<const SizedMotion<Model::kStates>> erased(Model model, std::string_view rest = {}) {
+  return std::make_shared<const ErasedMotion<Model>>(std::move(model), rest);
+}
+
+}  // namespace truebearing

@@ -1,0 +1,145 @@
+// Many filters of one kind that take the same measurements, as a bank of hypotheses does: what is virtual is called
+// once for all of them, and motions that several share are asked for F and Q once.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "truebearing/core/covariance.hpp"
+#include "truebearing/filter/filter_state.hpp"
+
+namespace truebearing {
+
+class FilterGroup {
+ public:
+  virtual ~FilterGroup() = default;
+
+  virtual int states() const = 0;  ///< n
+  virtual std::size_t size() const = 0;
+
+  /// Member i begins anew with x (n) and P (n x n, by columns). False where these are not finite, or P no covariance.
+  virtual bool begin(std::size_t i, const double* x, const double* P) = 0;
+  /// All cross dt_s seconds. False where one failed: then some have crossed and some have not.
+  virtual bool predict(double dt_s) = 0;
+  /// Member i takes measurements[i]; gained[i] becomes the log likelihood of its innovation, up to the power of 2 pi
+  /// that all share, and minus infinity where it failed.
+  virtual void update(std::span<const AnyMeasurement* const> measurements, std::span<double> gained) = 0;
+  /// x = sum w_i x_i / sum w, P = sum w_i / sum w (P_i + (x_i - x)(x_i - x)'), over the members with a weight.
+  virtual void mix(std::span<const double> weights, double sum, BoundedVector& x, BoundedMatrix& P) const = 0;
+  /// Becomes a copy of `other`, which was made by fresh() from this one or from the same.
+  virtual void assign(const FilterGroup& other) = 0;
+  virtual std::unique_ptr<FilterGroup> fresh() const = 0;
+
+ protected:
+  FilterGroup() = default;
+  FilterGroup(const FilterGroup&) = default;
+  FilterGroup& operator=(const FilterGroup&) = delete;
+};
+
+/// The motion that a group's members share, as far as it was computed.
+template <int N>
+struct GivenTransition {
+  using Scalar = double;
+  static constexpr int kStates = N;
+  using Matrix = Eigen::Matrix<double, N, N>;
+
+  Matrix F_dt;
+  Matrix Q_dt;
+
+  const Matrix& F(double) const { return F_dt; }
+  const Matrix& Q(double) const { return Q_dt; }
+};
+
+template <typename Filter>
+class FilterGroupOf final : public FilterGroup {
+  static constexpr int N = Filter::kStates;
+  using Motion = SizedMotion<N>;
+  using State = Eigen::Matrix<double, N, 1>;
+  using Covariance = Eigen::Matrix<double, N, N>;
+
+ public:
+  /// motion_of[i]: place in `motions` of member i's.
+  FilterGroupOf(std::vector<std::shared_ptr<const Motion>> motions, std::vector<std::size_t> motion_of)
+      : motions_(std::move(motions)), motion_of_(std::move(motion_of)), transitions_(motions_.size()) {
+    members_.reserve(motion_of_.size());
+    for (const std::size_t motion : motion_of_) members_.emplace_back(motions_[motion]);
+  }
+
+  int states() const override { return N; }
+  std::size_t size() const override { return members_.size(); }
+
+  bool begin(std::size_t i, const double* x, const double* P) override {
+    members_[i].begin(x, P);
+    return members_[i].filter().x().allFinite() && members_[i].filter().P().allFinite();
+  }
+
+  bool predict(double dt_s) override {
+    for (std::size_t m = 0; m < motions_.size(); ++m)
+      if (motions_[m]->is_linear()) transitions_[m] = {motions_[m]->F(State::Zero(), dt_s), motions_[m]->Q(dt_s)};
+    bool valid = true;
+    for (std::size_t i = 0; i < members_.size(); ++i) {
+      const std::size_t m = motion_of_[i];
+      if (motions_[m]->is_linear())
+        valid &= members_[i].filter().predict(transitions_[m], dt_s) != StepStatus::failed;
+      else
+        valid &= members_[i].predict(dt_s) != StepStatus::failed;
+    }
+    return valid;
+  }
+
+  void update(std::span<const AnyMeasurement* const> measurements, std::span<double> gained) override {
+    for (std::size_t i = 0; i < members_.size(); ++i) {
+      switch (measurements[i]->size()) {
+        case 1:
+          gained[i] = take<1>(members_[i], *measurements[i]);
+          break;
+        case 2:
+          gained[i] = take<2>(members_[i], *measurements[i]);
+          break;
+        default:
+          gained[i] = take<3>(members_[i], *measurements[i]);
+      }
+    }
+  }
+
+  void mix(std::span<const double> weights, double sum, BoundedVector& x, BoundedMatrix& P) const override {
+    State mean = State::Zero();
+    Covariance spread = Covariance::Zero();
+    for (std::size_t i = 0; i < members_.size(); ++i) mean += weights[i] * members_[i].filter().x();
+    mean /= sum;
+    for (std::size_t i = 0; i < members_.size(); ++i) {
+      if (weights[i] == 0.0) continue;  // it may be so far off that its spread is not finite
+      const State d = members_[i].filter().x() - mean;
+      spread += weights[i] / sum * (members_[i].filter().P() + d * d.transpose());
+    }
+    x = mean;
+    P = spread;
+  }
+
+  void assign(const FilterGroup& other) override {
+    const auto& same = static_cast<const FilterGroupOf&>(other);
+    for (std::size_t i = 0; i < members_.size(); ++i) members_[i].copy(same.members_[i]);
+  }
+  std::unique_ptr<FilterGroup> fresh() const override { return std::make_unique<FilterGroupOf>(motions_, motion_of_); }
+
+ private:
+  template <int M>
+  static double take(FilterState<Filter>& member, const AnyMeasurement& measurement) {
+    const Update<N, M> update = member.updated(static_cast<const SizedMeasurement<M>&>(measurement));
+    const double gained = -0.5 * (update.nis + log_determinant(update.S));
+    return update.status == StepStatus::ok && std::isfinite(gained) ? gained
+                                                                    : -std::numeric_limits<double>::infinity();
+  }
+
+  std::vector<std::shared_ptr<const Motion>> motions_;
+  std::vector<std::size_t> motion_of_;
+  std::vector<GivenTransition<N>> transitions_;
+  std::vector<FilterState<Filter>> members_;
+};
+
+}  // namespace truebearing

@@ -1,0 +1,146 @@
+// FilterState puts a fixed-size filter (KalmanFilter and its like) behind the seam of tracked_state.hpp. It is compiled
+// for a filter of N states and measurements of M components, whatever the models.
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <type_traits>
+#include <utility>
+
+#include "truebearing/filter/any_measurement.hpp"
+#include "truebearing/filter/erased_motion.hpp"
+#include "truebearing/filter/tracked_state.hpp"
+#include "truebearing/filter/update.hpp"
+#include "truebearing/measurement/bearing.hpp"
+#include "truebearing/motion/any_motion.hpp"
+
+namespace truebearing {
+
+template <typename FilterType>
+class FilterState final : public TrackedState {
+ public:
+  using Filter = FilterType;
+  static constexpr int N = Filter::kStates;
+  using State = Eigen::Matrix<double, N, 1>;
+  using Covariance = Eigen::Matrix<double, N, N>;
+  using Motion = SizedMotion<N>;
+
+  explicit FilterState(std::shared_ptr<const Motion> motion)
+      : TrackedState(N), motion_(std::move(motion)), filter_(State::Zero(), Covariance::Identity()) {
+    show();
+  }
+  FilterState(const FilterState& other)
+      : TrackedState(N), motion_(other.motion_), filter_(other.filter_) {
+    show();
+  }
+
+  void begin(const double* x, const double* P) override {
+    filter_ = Filter(State(Eigen::Map<const State>(x)), Covariance(Eigen::Map<const Covariance>(P)));
+    show();
+  }
+
+  StepStatus predict(double dt_s) override {
+    const StepStatus status = filter_.predict(*motion_, dt_s);
+    show();
+    return status;
+  }
+
+  StepStatus update(const AnyMeasurement& measurement, StateUpdate& update) override {
+    switch (measurement.size()) {
+      case 1:
+        return take(static_cast<const SizedMeasurement<1>&>(measurement), update);
+      case 2:
+        return take(static_cast<const SizedMeasurement<2>&>(measurement), update);
+      case 3:
+        return take(static_cast<const SizedMeasurement<3>&>(measurement), update);
+      default:
+        return StepStatus::failed;
+    }
+  }
+
+  /// The same, with what it leaves behind in fixed sizes.
+  template <int M>
+  Update<N, M> updated(const SizedMeasurement<M>& measurement);
+
+  void assign(const TrackedState& other) override { copy(static_cast<const FilterState&>(other)); }
+  void copy(const FilterState& other) {
+    filter_ = other.filter_;
+    show();
+  }
+
+  std::unique_ptr<TrackedState> fresh() const override { return std::make_unique<FilterState>(motion_); }
+
+  const Motion& motion() const { return *motion_; }
+  Filter& filter() { return filter_; }
+  const Filter& filter() const { return filter_; }
+
+ private:
+  static constexpr bool kCarriesP = std::is_reference_v<decltype(std::declval<const Filter&>().P())>;
+
+  /// Of a filter that carries another form than P itself, P is made here.
+  void show() {
+    if constexpr (kCarriesP) {
+      estimate_at(filter_.x().data(), filter_.P().data());
+    } else {
+      shown_P_ = filter_.P();
+      estimate_at(filter_.x().data(), shown_P_.data());
+    }
+  }
+
+  template <int M>
+  StepStatus take(const SizedMeasurement<M>& measurement, StateUpdate& update) {
+    const Update<N, M> fixed = updated(measurement);
+    update.nu = fixed.nu;
+    update.S = fixed.S;
+    update.K = fixed.K;
+    update.nis = fixed.nis;
+    return fixed.status;
+  }
+
+  struct None {};
+  std::shared_ptr<const Motion> motion_;
+  Filter filter_;
+  [[no_unique_address]] std::conditional_t<kCarriesP, None, Covariance> shown_P_;
+};
+
+/// `Filter` under `motion`, a model of a known type.
+template <typename Filter, MotionModel Motion>
+std::unique_ptr<TrackedState> state_of(Motion motion) {
+  return std::make_unique<FilterState<Filter>>(erased(std::move(motion)));
+}
+
+namespace detail {
+
+/// Whether a measured position has a compiled form of its own: of a state on the line or in the plane.
+template <int N, int M>
+inline constexpr bool kHasPositionForm = M == (N <= 3 ? 1 : 2) && N <= 6;
+
+}  // namespace detail
+
+template <typename FilterType>
+template <int M>
+Update<FilterState<FilterType>::N, M> FilterState<FilterType>::updated(const SizedMeasurement<M>& measurement) {
+  Update<N, M> update;
+  if constexpr (requires { filter_.update(MeasurementOn<N, M>{measurement}, measurement.z); }) {
+    if constexpr (detail::kHasPositionForm<N, M>) {
+      if (measurement.is_position()) {
+        update = filter_.update(PositionOn<N, M>{measurement.R}, measurement.z);
+        show();
+        return update;
+      }
+    }
+    update = filter_.update(MeasurementOn<N, M>{measurement}, measurement.z);
+  } else if constexpr (M == 1) {  // a filter of bearings alone, which asks for more than h and H
+    const auto* bearing = dynamic_cast<const ErasedMeasurement<Bearing<>>*>(&measurement);
+    if (bearing)
+      update = filter_.update(bearing->model(), measurement.z);
+    else
+      update.status = StepStatus::failed;
+  } else {
+    update.status = StepStatus::failed;
+  }
+  show();
+  return update;
+}
+
+}  // namespace truebearing

@@ -1,0 +1,236 @@
+#include "truebearing/filter/interacting_multiple_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "truebearing/core/covariance.hpp"
+
+namespace truebearing {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// A mode's estimate in the space of another mode's N states: what it lacks is taken from that mode's own.
+template <int N>
+struct InSpaceOf {
+  using State = Eigen::Matrix<double, N, 1>;
+  using Covariance = Eigen::Matrix<double, N, N>;
+
+  State own_x;
+  Covariance own_P;
+
+  State x(const TrackedState& other) const {
+    if (other.size() == N) return Eigen::Map<const State>(other.x_data());
+    State x = own_x;
+    const int shared = std::min(N, other.size());
+    for (int i = 0; i < shared; ++i) x(i) = other.x_data()[i];
+    return x;
+  }
+
+  Covariance P(const TrackedState& other) const {
+    if (other.size() == N) return Eigen::Map<const Covariance>(other.P_data());
+    Covariance P = own_P;
+    const int shared = std::min(N, other.size());
+    for (int j = 0; j < N; ++j)
+      for (int i = 0; i < N; ++i) {
+        if (i < shared && j < shared)
+          P(i, j) = other.P_data()[j * other.size() + i];
+        else if (i < shared || j < shared)
+          P(i, j) = 0.0;
+      }
+    return P;
+  }
+};
+
+// Equations (11.6.6-8) to (-10): `mixed` begins with the mixture that mode `own` of N states sees.
+template <int N>
+void mix(const ModeVector& weights, const std::vector<std::unique_ptr<TrackedState>>& modes, const TrackedState& own,
+         TrackedState& mixed) {
+  using Space = InSpaceOf<N>;
+  const Space space{Eigen::Map<const typename Space::State>(own.x_data()),
+                    Eigen::Map<const typename Space::Covariance>(own.P_data())};
+  typename Space::State mean = Space::State::Zero();
+  for (std::size_t i = 0; i < modes.size(); ++i) mean += weights[static_cast<Eigen::Index>(i)] * space.x(*modes[i]);
+  typename Space::Covariance P = Space::Covariance::Zero();
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    const double weight = weights[static_cast<Eigen::Index>(i)];
+    if (weight == 0.0) continue;
+    const typename Space::State d = space.x(*modes[i]) - mean;
+    P += weight * (space.P(*modes[i]) + d * d.transpose());
+  }
+  mixed.begin(mean.data(), P.data());
+}
+
+void mix(const ModeVector& weights, const std::vector<std::unique_ptr<TrackedState>>& modes, const TrackedState& own,
+         TrackedState& mixed) {
+  static_assert(kMaxDimension == 8);
+  switch (own.size()) {
+    case 2:
+      return mix<2>(weights, modes, own, mixed);
+    case 3:
+      return mix<3>(weights, modes, own, mixed);
+    case 4:
+      return mix<4>(weights, modes, own, mixed);
+    case 5:
+      return mix<5>(weights, modes, own, mixed);
+    case 6:
+      return mix<6>(weights, modes, own, mixed);
+    case 7:
+      return mix<7>(weights, modes, own, mixed);
+    case 8:
+      return mix<8>(weights, modes, own, mixed);
+    default:
+      return mix<1>(weights, modes, own, mixed);
+  }
+}
+
+int longest(const InteractingMultipleModel::Modes& modes) {
+  int n = 0;
+  for (const auto& mode : modes) n = std::max(n, mode->size());
+  return n;
+}
+
+}  // namespace
+
+InteractingMultipleModel::InteractingMultipleModel(Modes modes, MarkovChain chain)
+    : TrackedState(longest(modes)),
+      modes_(std::move(modes)),
+      chain_(std::move(chain)),
+      probabilities_(chain_.initial),
+      predicted_(chain_.initial) {
+  if (modes_.empty() || modes_.size() > static_cast<std::size_t>(kMaxModes) ||
+      static_cast<std::size_t>(chain_.modes()) != modes_.size())
+    throw std::invalid_argument("a multiple model has 1 to 10 modes, and a chain of as many");
+  for (const auto& mode : modes_) scratch_.push_back(mode->fresh());
+  x_.setZero(size());
+  P_.setZero(size(), size());
+  estimate_at(x_.data(), P_.data());
+  show();
+}
+
+void InteractingMultipleModel::begin(const double* x, const double* P) {
+  const Eigen::Map<const BoundedMatrix> whole(P, size(), size());
+  for (const auto& mode : modes_) {
+    const BoundedMatrix beginning = whole.topLeftCorner(mode->size(), mode->size());
+    mode->begin(x, beginning.data());
+  }
+  probabilities_ = predicted_ = chain_.initial;
+  show();
+}
+
+StepStatus InteractingMultipleModel::predict(double dt_s) {
+  const ModeMatrix Pi = chain_.over(dt_s);
+  const ModeVector c = Pi.transpose() * probabilities_;
+  mix_all(Pi, c);
+  for (const auto& mode : scratch_)
+    if (mode->predict(dt_s) == StepStatus::failed) return StepStatus::failed;
+  modes_.swap(scratch_);
+  predicted_ = probabilities_ = c;
+  show();
+  return StepStatus::ok;
+}
+
+void InteractingMultipleModel::mix_all(const ModeMatrix& Pi, const ModeVector& c) {
+  for (Eigen::Index j = 0; j < modes(); ++j) {
+    ModeVector weights = Pi.col(j).cwiseProduct(probabilities_);
+    if (c[j] > 0.0)
+      weights /= c[j];
+    else
+      weights = ModeVector::Unit(modes(), j);  // a mode that cannot be entered keeps to itself
+    mix(weights, modes_, *modes_[static_cast<std::size_t>(j)], *scratch_[static_cast<std::size_t>(j)]);
+  }
+}
+
+StepStatus InteractingMultipleModel::update(const AnyMeasurement& measurement, StateUpdate& combined) {
+  ModeVector log_weight(modes());
+  for (std::size_t j = 0; j < modes_.size(); ++j) {
+    scratch_[j]->assign(*modes_[j]);
+    const StepStatus status = scratch_[j]->update(measurement, updates_[j]);
+    const double likelihood = log_density(updates_[j].S, updates_[j].nu);
+    const bool valid = status == StepStatus::ok && std::isfinite(likelihood);
+    const auto place = static_cast<Eigen::Index>(j);
+    log_weight[place] = valid ? std::log(predicted_[place]) + likelihood : -kInfinity;
+  }
+  mixture_of_innovations(log_weight, combined);
+  const double largest = log_weight.maxCoeff();
+  if (!(largest > -kInfinity) || !std::isfinite(combined.nis)) return StepStatus::failed;
+  modes_.swap(scratch_);
+  probabilities_ = (log_weight.array() - largest).exp();
+  probabilities_ /= probabilities_.sum();
+  predicted_ = probabilities_;
+  for (std::size_t j = 0; j < modes_.size(); ++j)
+    if (probabilities_[static_cast<Eigen::Index>(j)] > 0.0)
+      combined.K.topRows(modes_[j]->size()) += probabilities_[static_cast<Eigen::Index>(j)] * updates_[j].K;
+  show();
+  return StepStatus::ok;
+}
+
+// nu, S and NIS of the mixture of the predictions of the modes that have not failed.
+void InteractingMultipleModel::mixture_of_innovations(const ModeVector& log_weight, StateUpdate& combined) const {
+  const Eigen::Index m = updates_.front().nu.size();
+  combined.nu.setZero(m);
+  combined.S.setZero(m, m);
+  combined.K.setZero(size(), m);
+  double total = 0.0;
+  for (Eigen::Index j = 0; j < modes(); ++j) {
+    if (!std::isfinite(log_weight[j])) continue;
+    total += predicted_[j];
+    combined.nu += predicted_[j] * updates_[static_cast<std::size_t>(j)].nu;
+  }
+  combined.nu /= total;
+  for (Eigen::Index j = 0; j < modes(); ++j) {
+    if (!std::isfinite(log_weight[j])) continue;
+    const StateUpdate& update = updates_[static_cast<std::size_t>(j)];
+    const BoundedVector d = update.nu - combined.nu;
+    const double weight = predicted_[j] / total;
+    for (Eigen::Index col = 0; col < m; ++col)
+      for (Eigen::Index row = 0; row < m; ++row)
+        combined.S(row, col) += weight * (update.S(row, col) + d[row] * d[col]);
+  }
+  combined.nis = mahalanobis_squared(combined.S, combined.nu);
+}
+
+void InteractingMultipleModel::show() {
+  const int n = size();
+  double* x = x_.data();
+  double* P = P_.data();
+  std::fill_n(x, n, 0.0);
+  std::fill_n(P, n * n, 0.0);
+  for (std::size_t j = 0; j < modes_.size(); ++j) {
+    const double weight = probabilities_[static_cast<Eigen::Index>(j)];
+    for (int i = 0; i < modes_[j]->size(); ++i) x[i] += weight * modes_[j]->x_data()[i];
+  }
+  for (std::size_t j = 0; j < modes_.size(); ++j) {
+    const double weight = probabilities_[static_cast<Eigen::Index>(j)];
+    const int length = modes_[j]->size();
+    const double* mode_x = modes_[j]->x_data();
+    const double* mode_P = modes_[j]->P_data();
+    double d[kMaxDimension];
+    for (int i = 0; i < n; ++i) d[i] = (i < length ? mode_x[i] : 0.0) - x[i];
+    for (int col = 0; col < n; ++col) {
+      for (int row = 0; row < n; ++row) P[col * n + row] += weight * d[row] * d[col];
+      if (col < length)
+        for (int row = 0; row < length; ++row) P[col * n + row] += weight * mode_P[col * length + row];
+    }
+  }
+}
+
+void InteractingMultipleModel::assign(const TrackedState& other) {
+  const auto& same = static_cast<const InteractingMultipleModel&>(other);
+  for (std::size_t j = 0; j < modes_.size(); ++j) modes_[j]->assign(*same.modes_[j]);
+  probabilities_ = same.probabilities_;
+  predicted_ = same.predicted_;
+  std::copy_n(same.x_.data(), size(), x_.data());
+  std::copy_n(same.P_.data(), size() * size(), P_.data());
+}
+
+std::unique_ptr<TrackedState> InteractingMultipleModel::fresh() const {
+  Modes modes;
+  for (const auto& mode : modes_) modes.push_back(mode->fresh());
+  return std::make_unique<InteractingMultipleModel>(std::move(modes), chain_);
+}
+
+}  // namespace truebearing

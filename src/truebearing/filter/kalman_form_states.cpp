@@ -1,0 +1,8 @@
+#include "truebearing/filter/filter_kinds.hpp"
+
+namespace truebearing {
+
+TRUEBEARING_EACH_LENGTH(template class, TRUEBEARING_SQUARE_ROOT_STATE);
+TRUEBEARING_EACH_LENGTH(template class, TRUEBEARING_CONVENTIONAL_STATE);
+
+}  // namespace truebearing

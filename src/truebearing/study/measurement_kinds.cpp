@@ -1,0 +1,128 @@
+#include "truebearing/study/measurement_kinds.hpp"
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "truebearing/core/angle.hpp"
+#include "truebearing/tracker/bearing_sensor.hpp"
+#include "truebearing/tracker/plane_sensor.hpp"
+#include "truebearing/tracker/position_sensor.hpp"
+
+namespace truebearing {
+namespace {
+
+constexpr Range kSigma_deg{0.0, 90.0, true};
+
+// What a reader takes: the table, the space of the records, and what the standard deviations are multiplied by.
+struct Reading {
+  TableReader& table;
+  const StateSpace& space;
+  double factor;
+};
+
+double read_factor(const Reading& reading) {
+  return reading.table.number_or("sigma_factor", 1.0, kPositive) * reading.factor;
+}
+
+double read_position_sigma(TableReader& table) {
+  if (table.has("sigma_m") == table.has("variance_m2"))
+    throw table.error("", "has neither or both of sigma_m and variance_m2", "one of the two");
+  return table.has("sigma_m") ? table.number("sigma_m", kPositive) : std::sqrt(table.number("variance_m2", kPositive));
+}
+
+std::unique_ptr<AnySensor> read_position(const Reading& reading) {
+  const double sigma_m = read_position_sigma(reading.table), factor = read_factor(reading);
+  if (reading.space == line_space()) return sensor_of(PositionSensor<1>{PositionSensor<1>::Sigma(sigma_m), factor});
+  return sensor_of(PlaneSensor{{sigma_m, sigma_m}, factor, false, Eigen::Vector2d::Zero()});
+}
+
+PolarSensor read_polar(const Reading& reading) {
+  TableReader& table = reading.table;
+  PolarSensor sensor;
+  sensor.sigma_factor = read_factor(reading);
+  sensor.sigma << table.number("range_sigma_m", kPositive), radians(table.number("bearing_sigma_deg", kSigma_deg));
+  if (table.has("site_m")) {
+    const std::vector<double> site = table.numbers("site_m", 2);
+    sensor.site_m << site[0], site[1];
+  }
+  return sensor;
+}
+
+std::unique_ptr<AnySensor> read_range_bearing(const Reading& reading) {
+  return sensor_of(read_polar(reading));
+}
+
+std::unique_ptr<AnySensor> read_converted(const Reading& reading) {
+  const PolarSensor polar = read_polar(reading);
+  return sensor_of(PlaneSensor{polar.sigma, polar.sigma_factor, true, polar.site_m});
+}
+
+std::unique_ptr<AnySensor> read_bearing(const Reading& reading) {
+  const double sigma_rad = radians(reading.table.number("bearing_sigma_deg", kSigma_deg));
+  return sensor_of(BearingSensor{sigma_rad, read_factor(reading)});
+}
+
+BearingFrequencySensor read_bearing_frequency(const Reading& reading) {
+  TableReader& table = reading.table;
+  BearingFrequencySensor sensor;
+  sensor.sigma_rad = radians(table.number("bearing_sigma_deg", kSigma_deg));
+  sensor.sigma_hz = table.number("frequency_sigma_hz", kPositive);
+  sensor.sigma_factor = read_factor(reading);
+  sensor.sound_mps = table.number_or("sound_mps", kSoundInWater_mps, kPositive);
+  return sensor;
+}
+
+std::unique_ptr<AnySensor> read_frequencies(const Reading& reading) {
+  return sensor_of(read_bearing_frequency(reading));
+}
+
+struct MeasurementKind {
+  const char* model;
+  std::vector<std::string> spaces;  ///< the first is the default
+  std::unique_ptr<AnySensor> (*read)(const Reading& reading);
+  bool has_frequency = false;
+};
+
+const std::vector<MeasurementKind>& kinds() {
+  static const std::vector<MeasurementKind> the_kinds{
+      {"position", {"line", "plane"}, read_position},
+      {"range_bearing", {"plane"}, read_range_bearing},
+      {"converted_range_bearing", {"plane"}, read_converted},
+      {"bearing", {"plane"}, read_bearing},
+      {"bearing_frequency", {"plane_frequency", "plane"}, read_frequencies, true},
+  };
+  return the_kinds;
+}
+
+}  // namespace
+
+MeasurementChoice read_measurement(TableReader& tracker, double factor) {
+  TableReader table = tracker.table("measurement");
+  std::vector<std::string> models;
+  for (const MeasurementKind& kind : kinds()) models.emplace_back(kind.model);
+  const std::string model = table.choice("model", models);
+  for (const MeasurementKind& kind : kinds()) {
+    if (model != kind.model) continue;
+    const StateSpace& space = *find_state_space(tracker.choice_or("space", kind.spaces, kind.spaces.front()));
+    MeasurementChoice choice{model, kind.read({table, space, factor}), &space, kind.has_frequency};
+    table.finish();
+    return choice;
+  }
+  throw table.error("model", "is \"" + model + "\"");
+}
+
+bool measures(const TableReader& tracker, const std::string& model) {
+  const toml::table* measurement = tracker.raw()["measurement"].as_table();
+  return measurement && (*measurement)["model"].value_or(std::string()) == model;
+}
+
+BearingFrequencySensor read_bearing_frequency_sensor(TableReader& tracker) {
+  TableReader table = tracker.table("measurement");
+  table.choice("model", {"bearing_frequency"});
+  const BearingFrequencySensor sensor = read_bearing_frequency({table, plane_frequency_space(), 1.0});
+  table.finish();
+  return sensor;
+}
+
+}  // namespace truebearing

@@ -1,0 +1,143 @@
+#include "truebearing/study/motion_kinds.hpp"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "truebearing/core/angle.hpp"
+#include "truebearing/filter/erased_motion.hpp"
+#include "truebearing/motion/constant_acceleration.hpp"
+#include "truebearing/motion/constant_velocity.hpp"
+#include "truebearing/motion/coordinated_turn.hpp"
+#include "truebearing/motion/singer.hpp"
+#include "truebearing/motion/turning_target.hpp"
+#include "truebearing/motion/with_frequency.hpp"
+
+namespace truebearing {
+namespace {
+
+constexpr Range kTurnRate_degps{-90.0, 90.0};
+
+// `model` with the frequency where the layout has it.
+template <typename Model>
+std::shared_ptr<const AnyMotion> laid_out(const Model& model, const MotionLayout& layout, std::string_view rest = {}) {
+  if constexpr (Model::kStates >= 4)
+    if (layout.has_frequency) return erased(WithFrequency<Model>{model, layout.frequency_q_hz2ps}, rest);
+  return erased(model, rest);
+}
+
+// noise = "fixed" | "discrete" | "continuous" and its number.
+template <int D>
+AnyNoise<2 * D> read_noise(TableReader& motion, double factor) {
+  const std::string kind = motion.choice("noise", {"fixed", "discrete", "continuous"});
+  if (kind == "discrete") return {DiscreteWhiteNoise{motion.number("sigma_a_mps2", kNonNegative) * std::sqrt(factor)}};
+  if (kind == "continuous") return {ContinuousWhiteNoise{motion.number("q_m2ps3", kNonNegative) * factor}};
+  const std::vector<double> variance = motion.numbers("variance", 2 * D, kNonNegative);
+  const double period_s = motion.number("period_s", kPositive);
+  FixedNoise<2 * D> noise{Eigen::Map<const Eigen::Matrix<double, 2 * D, 1>>(variance.data()).asDiagonal(), period_s};
+  noise.Q_per_step *= factor;
+  return {noise};
+}
+
+template <int D>
+std::shared_ptr<const AnyMotion> constant_velocity(TableReader& motion, const MotionLayout& layout) {
+  return laid_out(ConstantVelocity<D, AnyNoise<2 * D>>{read_noise<D>(motion, layout.process_noise_factor)}, layout);
+}
+
+template <int D>
+std::shared_ptr<const AnyMotion> constant_acceleration(TableReader& motion, const MotionLayout& layout) {
+  const double factor = layout.process_noise_factor;
+  if (motion.choice("noise", {"continuous", "discrete"}) == "continuous") {
+    const ContinuousWhiteJerk noise{motion.number("q_m2ps5", kNonNegative) * factor};
+    return laid_out(ConstantAcceleration<D, ContinuousWhiteJerk>{noise}, layout, "accelerations");
+  }
+  const DiscreteAccelerationStep noise{motion.number("sigma_mps2", kNonNegative) * std::sqrt(factor)};
+  return laid_out(ConstantAcceleration<D, DiscreteAccelerationStep>{noise}, layout, "accelerations");
+}
+
+template <int D>
+std::shared_ptr<const AnyMotion> singer(TableReader& motion, const MotionLayout& layout) {
+  const double sigma = motion.number("sigma_a_mps2", kPositive) * std::sqrt(layout.process_noise_factor);
+  return laid_out(Singer<D>{sigma, motion.number("time_constant_s", kPositive)}, layout, "accelerations");
+}
+
+std::shared_ptr<const AnyMotion> coordinated_turn(const AnyNoise<4>& noise, double rate_degps,
+                                                  const MotionLayout& layout) {
+  return laid_out(CoordinatedTurn<AnyNoise<4>>{noise, radians(rate_degps)}, layout);
+}
+
+std::shared_ptr<const AnyMotion> coordinated_turn(TableReader& motion, const MotionLayout& layout) {
+  const double rate_degps = motion.number("turn_rate_degps", kTurnRate_degps);
+  return coordinated_turn(read_noise<2>(motion, layout.process_noise_factor), rate_degps, layout);
+}
+
+std::shared_ptr<const AnyMotion> turning_target(TableReader& motion, const MotionLayout& layout) {
+  const double factor = layout.process_noise_factor;
+  const double wander =
+      radians(motion.number("turn_rate_noise_degps2", kNonNegative) * std::sqrt(factor));
+  return laid_out(TurningTarget<AnyNoise<4>>{read_noise<2>(motion, factor), wander}, layout, "turn rate");
+}
+
+using Read = std::shared_ptr<const AnyMotion> (*)(TableReader& motion, const MotionLayout& layout);
+
+struct MotionKind {
+  const char* model;
+  Read on_line;   ///< nullptr where there is none
+  Read in_plane;  ///< with a frequency or without
+};
+
+constexpr MotionKind kKinds[] = {
+    {"constant_velocity", constant_velocity<1>, constant_velocity<2>},
+    {"coordinated_turn", nullptr, coordinated_turn},
+    {"constant_acceleration", constant_acceleration<1>, constant_acceleration<2>},
+    {"singer", singer<1>, singer<2>},
+    {"turning_target", nullptr, turning_target},
+};
+
+// One table of `modes` is one mode, or with turn_rates_degps one for each rate.
+void read_mode(TableReader& mode, const MotionLayout& layout, AnyMotions& motions) {
+  if (layout.dimensions == 1 || !mode.has("turn_rates_degps")) {
+    motions.push_back(read_motion(mode, layout));
+    return;
+  }
+  mode.choice("model", {"coordinated_turn"});
+  const AnyNoise<4> noise = read_noise<2>(mode, layout.process_noise_factor);
+  for (const double rate_degps : mode.numbers("turn_rates_degps", -1, kTurnRate_degps))
+    motions.push_back(coordinated_turn(noise, rate_degps, layout));
+  mode.finish();
+}
+
+}  // namespace
+
+std::shared_ptr<const AnyMotion> read_motion(TableReader motion, const MotionLayout& layout) {
+  std::vector<std::string> models;
+  for (const MotionKind& kind : kKinds)
+    if (layout.dimensions == 2 || kind.on_line) models.emplace_back(kind.model);
+  const std::string model = motion.choice("model", models);
+  for (const MotionKind& kind : kKinds) {
+    if (model != kind.model) continue;
+    std::shared_ptr<const AnyMotion> read = (layout.dimensions == 1 ? kind.on_line : kind.in_plane)(motion, layout);
+    motion.finish();
+    return read;
+  }
+  throw motion.error("model", "is \"" + model + "\"");
+}
+
+AnyMotions read_modes(TableReader& tracker, const MotionLayout& layout) {
+  AnyMotions motions;
+  for (TableReader& mode : tracker.tables("modes")) read_mode(mode, layout, motions);
+  if (motions.size() < 2 || motions.size() > static_cast<std::size_t>(kMaxModes))
+    throw tracker.error("modes", fmt::format("makes {} of them", motions.size()), fmt::format("2 to {}", kMaxModes));
+  std::string_view rest;
+  for (const auto& motion : motions) {
+    if (!motion->rest().empty() && !rest.empty() && motion->rest() != rest)
+      throw tracker.error("modes", fmt::format("mix {} and {}, which are no parts of one state", rest, motion->rest()),
+                          "one of the two beside constant velocity and coordinated turns");
+    if (!motion->rest().empty()) rest = motion->rest();
+  }
+  return motions;
+}
+
+}  // namespace truebearing

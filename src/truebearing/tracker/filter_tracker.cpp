@@ -1,0 +1,234 @@
+#include "truebearing/tracker/filter_tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace truebearing {
+
+FilterTracker::FilterTracker(const StateSpace& space, std::unique_ptr<TrackedState> state,
+                             std::unique_ptr<AnySensor> sensor, Start start, FilterTrackerOptions options)
+    : space_(&space),
+      sensor_(std::move(sensor)),
+      start_(std::move(start)),
+      options_(options),
+      used_(std::move(state)),
+      predicted_(used_->fresh()),
+      updated_(used_->fresh()) {
+  check();
+  reset();
+}
+
+void FilterTracker::check() const {
+  const auto* prior = std::get_if<PriorStart>(&start_);
+  if (prior && (prior->x.size() != used_->size() || prior->P.rows() != used_->size()))
+    throw std::invalid_argument("a prior has as many components as the state");
+  if ((std::holds_alternative<OnePointStart>(start_) || std::holds_alternative<TwoPointStart>(start_)) &&
+      !sensor_->tells_position())
+    throw std::invalid_argument("a start from measurements needs measured positions");
+  if (std::holds_alternative<RangePrior>(start_) && !sensor_->tells_bearing())
+    throw std::invalid_argument("a start from a range needs measured bearings");
+  if (options_.output_pull > 0.0 && !sensor_->measures_position())
+    throw std::invalid_argument("output_pull needs measured positions");
+  if (space_->size() > used_->size()) throw std::invalid_argument("the state is shorter than its space");
+}
+
+std::span<const StepRecord> FilterTracker::step(const Measurement& measurement) {
+  const StreamGuard::Verdict verdict = guard_.examine(measurement, sensor_->has_value(measurement));
+  const bool usable = verdict == StreamGuard::Verdict::usable;
+  if (verdict == StreamGuard::Verdict::repeated || verdict == StreamGuard::Verdict::out_of_order) return refuse();
+  if (measurement.guess) guess_ = measurement.guess;
+
+  if (usable && begun_ && measurement.time_s - used_time_s_ > options_.lost_after_s) restart(measurement.time_s);
+  if (!begun_) return usable ? start_from(measurement) : std::span<const StepRecord>();
+
+  clear_blocks();
+  record_.time_s = measurement.time_s;
+  record_.sensor = measurement.sensor;
+
+  // The filter stays at its last used measurement: a missing one leaves no trace in what follows, to the bit.
+  predicted_->assign(*used_);
+  record_.status = predict(measurement.time_s - used_time_s_);
+  if (record_.status == StepStatus::ok) record_.status = usable ? update(measurement) : StepStatus::coasted;
+  if (record_.status != StepStatus::ok) return publish(*predicted_);
+  used_.swap(updated_);
+  used_time_s_ = measurement.time_s;
+  return publish(*used_);
+}
+
+void FilterTracker::reset() {
+  guard_ = {};
+  gate_ = Gate(options_.gate_nis);
+  record_ = {};
+  record_.space = space_;
+  record_.track = -1;
+  guess_.reset();
+  const auto* prior = std::get_if<PriorStart>(&start_);
+  restart(prior ? prior->time_s : 0.0);
+}
+
+void FilterTracker::take_over(double time_s, const BoundedVector& x, const BoundedMatrix& P) {
+  const auto* hand_over = std::get_if<HandOverStart>(&start_);
+  begin(lengthened({x, P}, used_->size(), hand_over ? hand_over->rest_sigma : 0.0));
+  pending_.reset();
+  used_time_s_ = time_s;
+}
+
+std::unique_ptr<Tracker> FilterTracker::fresh() const {
+  return std::make_unique<FilterTracker>(*space_, used_->fresh(), sensor_->fresh(), start_, options_);
+}
+
+RecordBlocks FilterTracker::blocks() const {
+  return {.prediction = true,
+          .innovation = true,
+          .gain = true,
+          .mode_probabilities = used_->mode_probabilities() != nullptr,
+          .measures_position = sensor_->measures_position()};
+}
+
+void FilterTracker::begin(const PriorStart& start) {
+  used_->begin(start.x.data(), start.P.data());
+  begun_ = true;
+}
+
+void FilterTracker::restart(double time_s) {
+  ++record_.track;
+  pending_.reset();
+  begun_ = false;
+  if (const auto* prior = std::get_if<PriorStart>(&start_)) begin(*prior);
+  used_time_s_ = time_s;
+}
+
+// Of positions, the first of two measurements waits; the second makes the state. Where both are of one time, the later
+// one waits. A bearing makes it by itself.
+std::span<const StepRecord> FilterTracker::start_from(const Measurement& measurement) {
+  if (const auto* prior = std::get_if<RangePrior>(&start_)) {
+    if (!prior->suffices_with(guess_)) return {};
+    const std::optional<Sight> sight = sensor_->sight(measurement);
+    const GaussianState plane = prior->state(sight->bearing_rad, sight->sigma_rad, sight->from, guess_);
+    const std::optional<PriorStart> start = sensor_->believe(plane, measurement);
+    return start ? begin_from(measurement, lengthened(*start, used_->size(), 0.0)) : std::span<const StepRecord>();
+  }
+  if (const auto* one_point = std::get_if<OnePointStart>(&start_))
+    return begin_from(measurement,
+                      lengthened(one_point_state(*sensor_->fix(measurement), one_point->velocity_sigma_mps),
+                                 used_->size(), one_point->rest_sigma));
+  const auto* two_point = std::get_if<TwoPointStart>(&start_);
+  if (two_point && pending_ && measurement.time_s > pending_->time_s)
+    return begin_from(measurement, lengthened(two_point_state(*sensor_->fix(*pending_), *sensor_->fix(measurement),
+                                                              measurement.time_s - pending_->time_s),
+                                              used_->size(), two_point->rest_sigma));
+  pending_ = measurement;
+  return {};
+}
+
+std::span<const StepRecord> FilterTracker::begin_from(const Measurement& measurement, const PriorStart& start) {
+  begin(start);
+  pending_.reset();
+  if (!used_->x().allFinite() || !used_->P().allFinite()) {
+    ++guard_.counts.failed;
+    begun_ = false;
+    return {};
+  }
+  used_time_s_ = measurement.time_s;
+  clear_blocks();
+  record_.time_s = measurement.time_s;
+  record_.sensor = measurement.sensor;
+  record_.status = StepStatus::ok;
+  return publish(*used_);
+}
+
+StepStatus FilterTracker::predict(double dt_s) {
+  // A failed prediction leaves the filter where it was, which is not where it would be by now.
+  if (dt_s > 0.0 && predicted_->predict(std::min(dt_s, options_.lost_after_s)) == StepStatus::failed) {
+    ++guard_.counts.failed;
+    return StepStatus::failed;
+  }
+  Prediction& prediction = record_.prediction.emplace();
+  copy_published(*predicted_, prediction.x, prediction.P);
+  return StepStatus::ok;
+}
+
+StepStatus FilterTracker::update(const Measurement& measurement) {
+  updated_->assign(*predicted_);
+  const AnyMeasurement& taken = sensor_->take(measurement);
+  const StepStatus status = updated_->update(taken, update_);
+  if (status == StepStatus::failed || !std::isfinite(update_.nis)) {  // so far off that its square overflows
+    ++guard_.counts.failed;
+    return StepStatus::failed;
+  }
+  Innovation& innovation = record_.innovation.emplace();
+  innovation.z = taken.value();
+  innovation.nu = update_.nu;
+  innovation.S = update_.S;
+  innovation.nis = update_.nis;
+  if (!gate_.passes(update_.nis)) {
+    ++guard_.counts.gated;
+    return StepStatus::rejected;
+  }
+  BoundedMatrix& gain = record_.gain.emplace();
+  if (space_->size() == used_->size())
+    gain = update_.K;
+  else
+    gain = update_.K.topRows(space_->size());
+  if (options_.output_pull > 0.0) {
+    if (taken.size() == 1)
+      pull<1>(taken);
+    else
+      pull<2>(taken);
+  }
+  return StepStatus::ok;
+}
+
+// A measurement that was not looked at: the state of the step before stands.
+std::span<const StepRecord> FilterTracker::refuse() {
+  if (!begun_ || record_.x.size() == 0) return {};
+  clear_blocks();
+  record_.status = StepStatus::rejected;
+  return {&record_, 1};
+}
+
+// With the gain K' = K + beta G (I - H K), G = [I; 0], in place of K: the covariance grows by (K' - K) S (K' - K)'.
+// H = [I, 0].
+template <int M>
+void FilterTracker::pull(const AnyMeasurement& measurement) {
+  using Vector = Eigen::Matrix<double, M, 1>;
+  using Square = Eigen::Matrix<double, M, M>;
+  const Vector position = updated_->x().template head<M>();
+  const Square S = update_.S;
+  const Square left = Square::Identity() - Square(update_.K.template topRows<M>());
+  moved_ = options_.output_pull * (Vector(measurement.value()) - position);
+  spread_ = options_.output_pull * options_.output_pull * left * S * left.transpose();
+}
+
+std::span<const StepRecord> FilterTracker::publish(const TrackedState& state) {
+  copy_published(state, record_.x, record_.P);
+  if (options_.output_pull > 0.0 && record_.gain) {
+    record_.x.head(moved_.size()) += moved_;
+    record_.P.topLeftCorner(moved_.size(), moved_.size()) += spread_;
+  }
+  if (const ModeVector* probabilities = state.mode_probabilities()) record_.mode_probabilities = *probabilities;
+  return {&record_, 1};
+}
+
+// Without the components that the space does not have.
+void FilterTracker::copy_published(const TrackedState& state, BoundedVector& x, BoundedMatrix& P) const {
+  const int n = space_->size(), states = state.size();
+  x.resize(n);
+  P.resize(n, n);
+  std::copy_n(state.x_data(), n, x.data());
+  if (n == states) {
+    std::copy_n(state.P_data(), n * n, P.data());
+    return;
+  }
+  for (int j = 0; j < n; ++j) std::copy_n(state.P_data() + j * states, n, P.data() + j * n);
+}
+
+void FilterTracker::clear_blocks() {
+  record_.prediction.reset();
+  record_.innovation.reset();
+  record_.gain.reset();
+}
+
+}  // namespace truebearing

@@ -1,0 +1,31 @@
+#include "truebearing/tracker/start.hpp"
+
+namespace truebearing {
+
+PriorStart one_point_state(const PositionFix& fix, double velocity_sigma_mps) {
+  const Eigen::Index d = fix.z.size();
+  PriorStart start{BoundedVector::Zero(2 * d),
+                   velocity_sigma_mps * velocity_sigma_mps * BoundedMatrix::Identity(2 * d, 2 * d)};
+  start.x.head(d) = fix.z;
+  start.P.topLeftCorner(d, d) = fix.R;
+  return start;
+}
+
+PriorStart two_point_state(const PositionFix& first, const PositionFix& second, double dt_s) {
+  const Eigen::Index d = second.z.size();
+  PriorStart start{BoundedVector(2 * d), BoundedMatrix(2 * d, 2 * d)};
+  start.x << second.z, (second.z - first.z) / dt_s;
+  start.P << second.R, second.R / dt_s, second.R / dt_s, (first.R + second.R) / (dt_s * dt_s);
+  return start;
+}
+
+PriorStart lengthened(const PriorStart& start, int states, double rest_sigma) {
+  const Eigen::Index n = start.x.size();
+  PriorStart longer{BoundedVector::Zero(states), rest_sigma * rest_sigma * BoundedMatrix::Identity(states, states),
+                    start.time_s};
+  longer.x.head(n) = start.x;
+  longer.P.topLeftCorner(n, n) = start.P;
+  return longer;
+}
+
+}  // namespace truebearing

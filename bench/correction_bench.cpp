@@ -73,7 +73,6 @@ CorrectionModel model(int rules) {
                                 .consequents = spread(rules, 2, 1.0),
                                 .output_scale = Eigen::Vector2d(1000.0, 50.0)});
   model.gate = BoxGate{Eigen::VectorXd::Constant(kFeatures, -10.0), Eigen::VectorXd::Constant(kFeatures, 10.0)};
-  model.kappa = 3.0;
   model.inflation = Eigen::VectorXd::Constant(rules, 1.2);
   model.usage = Eigen::VectorXd::Constant(rules, 1.0 / rules);
   model.local_mean = Eigen::MatrixXd::Zero(rules, 2);

@@ -187,8 +187,6 @@ CorrectionModel model(int rules) {
                                 .consequents = spread(rules, 4, 1.0),
                                 .output_scale = Eigen::Vector4d(80.0, 80.0, 40.0, 40.0)});
   model.gate = BoxGate{Eigen::VectorXd::Constant(d, -20.0), Eigen::VectorXd::Constant(d, 20.0)};
-  model.referee = RefereeOptions{};
-  model.kappa = 3.0;
   model.moments = Eigen::MatrixXd::Zero(rules, 16);
   for (Eigen::Index j = 0; j < rules; ++j) model.moments.row(j) = Eigen::Matrix4d::Identity().reshaped().transpose();
   model.usage = Eigen::VectorXd::Constant(rules, 1.0 / rules);
@@ -229,7 +227,8 @@ void tracker_ensemble(benchmark::State& state) {
   step_all(state, members);
 }
 void tracker_corrected(benchmark::State& state) {
-  CorrectedTracker tracker(ensemble(), std::make_shared<const CorrectionModel>(model(static_cast<int>(state.range()))));
+  CorrectedTracker tracker(ensemble(), std::make_shared<const CorrectionModel>(model(static_cast<int>(state.range()))),
+                           {.referee = RefereeOptions{}});
   step_all(state, tracker);
 }
 BENCHMARK(tracker_cv);

@@ -63,7 +63,7 @@ Eigen::MatrixXd outputs(const TeacherSet& teacher, const FuzzyNetwork& network) 
 
 // The box of the training data; symmetric in the features that a mirrored target mirrors, where mirror images were
 // taught. The disagreement has no low side, and no limit where `disagreements` is empty.
-BoxGate box_gate(const FuzzyTrainingData& data, const Eigen::VectorXd& disagreements, const GateSpec& spec) {
+BoxGate box_gate(const FuzzyTrainingData& data, const Eigen::VectorXd& disagreements, const BoxSpec& spec) {
   const Eigen::Index d = data.features.cols();
   BoxGate gate;
   gate.low.resize(d);
@@ -145,8 +145,6 @@ CorrectionModel train_correction(const Study& study, const std::string& name, co
   model.output_in_sigma = spec.output_in_sigma;
   model.features = spec.features;
   model.network = FuzzyNetwork(std::move(trained.parameters));
-  model.kappa = spec.kappa;
-  model.referee = spec.referee;
 
   // Covariance and gate from the wider family, where there is one.
   std::optional<TeacherSet> wider;
@@ -155,18 +153,17 @@ CorrectionModel train_correction(const Study& study, const std::string& name, co
   const TeacherSet& met = wider ? *wider : teacher;
   const Eigen::MatrixXd corrections = outputs(met, model.network);
   fit_covariance(met, corrections, spec, model);
-  if (spec.gate) {
-    const bool trusts_another = spec.reference != spec.base;
-    model.gate = box_gate(training_data(met, spec, space),
-                          trusts_another ? disagreements(met, corrections, model) : Eigen::VectorXd(), *spec.gate);
-  }
+  const bool trusts_another = spec.reference != spec.base;
+  model.gate = box_gate(training_data(met, spec, space),
+                        trusts_another ? disagreements(met, corrections, model) : Eigen::VectorXd(), spec.box);
   model.usage = trained.usage;
   model.local_mean = trained.local_mean;
   model.provenance = {{"study", study.name()},
                       {"tracker", name},
                       {"seed", fmt::format("{}", options.seed)},
                       {"training_runs", fmt::format("{}", spec.training.runs)},
-                      {"training_rows", fmt::format("{}", teacher.X.rows())}};
+                      {"training_rows", fmt::format("{}", teacher.X.rows())},
+                      {"bounds", describe(spec.bounds)}};
   if (taught) model.provenance["scenario"] = spec.training.scenario->filename().string();
   if (wider) model.provenance["covariance_scenario"] = spec.training.covariance_scenario->filename().string();
   model.validate();

@@ -11,7 +11,7 @@ namespace {
 void describe_correction(const Study& study, const TrackerSpec& spec) {
   const CorrectionSpec& correction = *spec.correction;
   fmt::print("    corrects {}, trusts {}, covariance of {}, kappa {}\n", correction.base, correction.reference,
-             correction.covariance_of, correction.kappa);
+             correction.covariance_of, correction.bounds.kappa);
   for (const FeatureSpec& feature : correction.features) fmt::print("    feature: {}\n", describe(feature));
   try {
     study.load_model(spec.name);

@@ -19,7 +19,7 @@ std::string validation_scores(const Study& study, const std::string& name, const
   TrackerSet trackers(study.make_ensemble(spec.members()));
   trackers.show_member(spec.base);
   if (spec.reference != spec.base) trackers.show_member(spec.reference);
-  trackers.show_correction(name, models.at(name));
+  trackers.show_correction(name, models.at(name), spec.bounds);
   ComparisonOptions comparison_options;
   comparison_options.seed = options.seed;
   comparison_options.role = Role::validation;

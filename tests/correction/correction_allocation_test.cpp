@@ -61,7 +61,6 @@ std::shared_ptr<const CorrectionModel> radar_model() {
   RandomStream random({}, StreamId::test);
   CorrectionModel model = testing::line_model(testing::radar_features(), testing::random_parameters(random, 4, 16, 2),
                                               "plain", "tuned", "wide");
-  model.kappa = 3.0;
   model.gate = testing::box(4, -3.0, 6.0);
   return testing::shared(model);
 }

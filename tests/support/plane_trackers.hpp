@@ -51,8 +51,6 @@ inline CorrectionModel plane_model(std::uint64_t seed, double size = 1.0) {
   for (const char* name : {"plain", "tuned", "imm"}) model.trackers[name] = "made by hand";
   model.frame = Frame::track;
   model.output_in_sigma = true;
-  model.kappa = 3.0;
-  model.referee = RefereeOptions{};
   for (const char* component : {"along_m", "cross_m"}) {
     FeatureSpec innovation, average;
     innovation.kind = FeatureKind::innovation;

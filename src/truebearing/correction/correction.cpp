@@ -21,8 +21,9 @@ int member(const Ensemble& ensemble, const std::string& name, const StateSpace& 
 
 }  // namespace
 
-Correction::Correction(std::shared_ptr<const CorrectionModel> model, const Ensemble& ensemble)
+Correction::Correction(std::shared_ptr<const CorrectionModel> model, const Ensemble& ensemble, CorrectionBounds bounds)
     : model_(std::move(model)),
+      bounds_(std::move(bounds)),
       base_(member(ensemble, model_->base, *model_->space)),
       reference_(member(ensemble, model_->reference, *model_->space)),
       source_(member(ensemble, model_->covariance_of, *model_->space)),
@@ -30,9 +31,10 @@ Correction::Correction(std::shared_ptr<const CorrectionModel> model, const Ensem
         return ensemble.tracker(name.empty() ? base_ : member(ensemble, name, *model_->space)).blocks();
       }) {
   model_->validate();
+  bounds_.validate();
   for (const std::string& name : prototype_.companions()) companions_.push_back(member(ensemble, name, *model_->space));
   companion_records_.resize(companions_.size());
-  if (model_->referee && !ensemble.tracker(base_).blocks().measures_position)
+  if (bounds_.referee && !ensemble.tracker(base_).blocks().measures_position)
     throw InputError("correction", "has a referee, and \"" + model_->base + "\" measures no position",
                      "a base that measures positions, or no referee");
   reset();
@@ -75,7 +77,7 @@ std::span<const StepRecord> Correction::correct(const Ensemble& ensemble) {
     }
     Track& track = track_of(reference.track);
     track.extractor.extract(*base, companion_records_, features_);
-    if (model_->referee) track.referee.judge(*base, *model_->referee);
+    if (bounds_.referee) track.referee.judge(*base, *bounds_.referee);
     correct_record(*base, reference, *source, track, records_[i]);
   }
   return {records_.data(), references.size()};
@@ -96,10 +98,11 @@ void Correction::correct_record(const StepRecord& base, const StepRecord& refere
   if (model_->output_in_sigma) output.array() *= rotation.covariance(base.P).diagonal().array().sqrt();
   const BoundedVector d = base.x + rotation.vector(output) - reference.x;
   const BoundedMatrix P_c = rotation.covariance(model_->head_covariance(phi_, rotation.covariance(source.P)));
-  const Limited limited = limit_kappa(reference.P, d, model_->kappa);
-  double g = model_->gate ? model_->gate->weight(features_, disagreement(d, P_c, reference.P)) : 1.0;
-  if (model_->referee) {
-    g *= track.referee.weight(*model_->referee);
+  const Limited limited = limit_kappa(reference.P, d, bounds_.kappa);
+  const bool gated = bounds_.gate && model_->gate;
+  double g = gated ? model_->gate->weight(features_, disagreement(d, P_c, reference.P)) : 1.0;
+  if (bounds_.referee) {
+    g *= track.referee.weight(*bounds_.referee);
     track.referee.predict(base.time_s, reference.x + limited.d, reference.x);
   }
 

@@ -11,6 +11,7 @@
 #include <memory>
 #include <vector>
 
+#include "truebearing/correction/correction_bounds.hpp"
 #include "truebearing/correction/correction_model.hpp"
 #include "truebearing/correction/feature_extractor.hpp"
 #include "truebearing/tracker/ensemble.hpp"
@@ -20,8 +21,8 @@ namespace truebearing {
 class Correction {
  public:
   /// Binds the model to the members of an ensemble by their names. Throws InputError where a member is missing, has
-  /// another state space or lacks what a feature reads.
-  Correction(std::shared_ptr<const CorrectionModel> model, const Ensemble& ensemble);
+  /// another state space or lacks what a feature or the referee reads, or where model or bounds are invalid.
+  Correction(std::shared_ptr<const CorrectionModel> model, const Ensemble& ensemble, CorrectionBounds bounds = {});
 
   /// One corrected record per track of the reference, from the ensemble's last step. Call it once per step. Valid until
   /// the next call. Allocates only when a track appears.
@@ -43,6 +44,7 @@ class Correction {
                       StepRecord& corrected);
 
   std::shared_ptr<const CorrectionModel> model_;
+  CorrectionBounds bounds_;
   int base_;
   int reference_;
   int source_;

@@ -1,6 +1,5 @@
 #include "truebearing/correction/correction_model.hpp"
 
-#include <cmath>
 #include <fmt/format.h>
 
 #include "truebearing/core/covariance.hpp"
@@ -37,7 +36,6 @@ void CorrectionModel::validate() const {
           fmt::format("{}, one per component of the state", n));
   require(!base.empty() && !reference.empty() && !covariance_of.empty(), "trackers", "a name is empty",
           "names of base, reference and covariance_of");
-  require(kappa > 0.0, "kappa", fmt::format("is {}", kappa), "a number > 0, or null for none");
   space_in(frame, *space);
   if (moments.size() == 0) {
     require(inflation.size() == M && inflation.allFinite() && (inflation.array() > 0.0).all(), "inflation",
@@ -50,14 +48,6 @@ void CorrectionModel::validate() const {
     for (Eigen::Index j = 0; j < M; ++j)
       require(is_covariance(BoundedMatrix(moments.row(j).reshaped(n, n))), "moments",
               fmt::format("of rule {} are no covariance", j), "symmetric positive semi-definite matrices");
-  }
-  if (referee) {
-    require(referee->alpha > 0.0 && referee->alpha <= 1.0, "referee.alpha", fmt::format("is {}", referee->alpha),
-            "a number in (0, 1]");
-    require(referee->tolerance > 0.0 && std::isfinite(referee->tolerance), "referee.tolerance",
-            fmt::format("is {}", referee->tolerance), "a number > 0");
-    require(referee->edge > 0.0 && std::isfinite(referee->edge), "referee.edge", fmt::format("is {}", referee->edge),
-            "a number > 0");
   }
   require(usage.size() == M && usage.allFinite(), "usage", fmt::format("holds {} numbers", usage.size()),
           fmt::format("{} finite numbers", M));

@@ -1,7 +1,6 @@
 // CorrectionModel: all that a trained correction is made of, as it stands in a model file. Immutable while it runs.
 #pragma once
 
-#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -11,7 +10,6 @@
 #include "truebearing/correction/box_gate.hpp"
 #include "truebearing/correction/feature.hpp"
 #include "truebearing/correction/fuzzy_network.hpp"
-#include "truebearing/correction/referee.hpp"
 
 namespace truebearing {
 
@@ -30,9 +28,7 @@ struct CorrectionModel {
   bool output_in_sigma = false;
   std::vector<FeatureSpec> features;
   FuzzyNetwork network;
-  std::optional<BoxGate> gate;                             ///< absent: always open
-  double kappa = std::numeric_limits<double>::infinity();  ///< infinity: not limited
-  std::optional<RefereeOptions> referee;                   ///< absent: none
+  std::optional<BoxGate> gate;  ///< the box that the training data filled; absent: always open
 
   /// The correction's own covariance, from one of two heads. `inflation` (M), > 0: (sum_j phi_j inflation_j) P, P that
   /// of `covariance_of`.

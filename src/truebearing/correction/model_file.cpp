@@ -7,6 +7,7 @@
 
 #include "truebearing/core/error.hpp"
 #include "truebearing/core/suggestion.hpp"
+#include "truebearing/correction/correction_bounds.hpp"
 #include "truebearing/io/json_file.hpp"
 
 namespace truebearing {
@@ -16,7 +17,7 @@ using Json = nlohmann::json;
 using OrderedJson = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "truebearing-correction";
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 constexpr const char* kSigma = "sigma";
 constexpr const char* kMoments = "moments";
 
@@ -157,18 +158,30 @@ std::vector<std::string> read_texts(ObjectReader& object, const std::string& key
   return texts;
 }
 
+// Version 1 held the bounds that the model was validated with; now its provenance remembers them.
+std::string read_first_bounds(ObjectReader& file) {
+  CorrectionBounds bounds{file.number_or_none("kappa"), !file.at("gate").is_null(), {}};
+  if (file.has("referee")) {
+    ObjectReader referee = file.object("referee");
+    bounds.referee = RefereeOptions{referee.number("alpha"), referee.number("tolerance"), referee.number("edge")};
+    referee.finish();
+  }
+  return describe(bounds);
+}
+
 CorrectionModel model_from(const Json& json, const std::string& name) {
   ObjectReader file(json, name, "");
   if (file.text("format") != kFormat) throw file.error("format", "is not " + std::string(kFormat), kFormat);
-  if (const double version = file.number("version"); version != kVersion)
-    throw file.error("version", fmt::format("is {}", version), fmt::format("{}, which this program reads", kVersion));
+  const double version = file.number("version");
+  if (version != 1 && version != kVersion)
+    throw file.error("version", fmt::format("is {}", version),
+                     fmt::format("1 or {}, which this program reads", kVersion));
 
   CorrectionModel model;
   model.space = &state_space_of_components(read_texts(file, "state", kMaxDimension));
   model.base = file.text("base");
   model.reference = file.text("reference");
   model.covariance_of = file.text("covariance_of");
-  model.kappa = file.number_or_none("kappa");
   ObjectReader trackers = file.object("trackers");
   for (const auto& [key, value] : json["trackers"].items()) model.trackers[key] = trackers.text(key);
 
@@ -204,12 +217,6 @@ CorrectionModel model_from(const Json& json, const std::string& name) {
     gate.finish();
   }
 
-  if (file.has("referee")) {
-    ObjectReader referee = file.object("referee");
-    model.referee = RefereeOptions{referee.number("alpha"), referee.number("tolerance"), referee.number("edge")};
-    referee.finish();
-  }
-
   const Json& rules = file.array("rules", 1, FuzzyNetwork::kMaxRules);
   const auto M = static_cast<Eigen::Index>(rules.size());
   parameters.centres.resize(M, d);
@@ -238,6 +245,7 @@ CorrectionModel model_from(const Json& json, const std::string& name) {
 
   ObjectReader provenance = file.object("provenance");
   for (const auto& [key, value] : json["provenance"].items()) model.provenance[key] = provenance.text(key);
+  if (version == 1) model.provenance["bounds"] = read_first_bounds(file);
   file.finish();
   try {
     model.network = FuzzyNetwork(std::move(parameters));
@@ -267,7 +275,6 @@ std::string model_text(const CorrectionModel& model) {
   json["base"] = model.base;
   json["reference"] = model.reference;
   json["covariance_of"] = model.covariance_of;
-  json["kappa"] = limit_json(model.kappa);
   json["trackers"] = OrderedJson::object();
   for (const auto& [name, configuration] : model.trackers) json["trackers"][name] = configuration;
   if (model.frame != Frame::state) json["frame"] = std::string(to_string(model.frame));
@@ -285,9 +292,6 @@ std::string model_text(const CorrectionModel& model) {
                     {"edge_fraction", model.gate->edge_fraction},
                     {"largest_disagreement", limit_json(model.gate->largest_disagreement)},
                     {"disagreement_edge_fraction", model.gate->disagreement_edge_fraction}};
-  if (model.referee)
-    json["referee"] = {
-        {"alpha", model.referee->alpha}, {"tolerance", model.referee->tolerance}, {"edge", model.referee->edge}};
   if (model.moments.size() > 0) json["covariance"] = kMoments;
   json["rules"] = OrderedJson::array();
   for (Eigen::Index j = 0; j < parameters.centres.rows(); ++j) {

@@ -274,10 +274,14 @@ std::string Study::configuration_line(const std::string& name) const {
   return tracker(name).kind + " " + configuration_text(configuration_of(name));
 }
 
-std::unique_ptr<Tracker> Study::make_tracker(const std::string& name) const {
+std::unique_ptr<Tracker> Study::make_tracker(const std::string& name, const CorrectionModels& models) const {
   const TrackerSpec& spec = tracker(name);
-  if (spec.correction)
-    return std::make_unique<CorrectedTracker>(make_ensemble(spec.correction->members()), load_model(name));
+  if (spec.correction) {
+    const auto given = models.find(name);
+    return std::make_unique<CorrectedTracker>(make_ensemble(spec.correction->members()),
+                                              given == models.end() ? load_model(name) : given->second,
+                                              spec.correction->bounds);
+  }
   const toml::table configuration = configuration_of(name);
   TableReader reader(configuration, path_.string(), "trackers." + name);
   return truebearing::make_tracker(spec.kind, reader);
@@ -310,7 +314,8 @@ TrackerSet Study::make_tracker_set(const CorrectionModels& models) const {
       continue;
     }
     const auto given = models.find(spec.name);
-    set.show_correction(spec.name, given == models.end() ? load_model(spec.name) : given->second);
+    set.show_correction(spec.name, given == models.end() ? load_model(spec.name) : given->second,
+                        spec.correction->bounds);
   }
   return set;
 }
@@ -331,12 +336,11 @@ void Study::check_model(const std::string& name, const CorrectionModel& model, c
   if (model.features != spec.features) throw differs("other features than the study has for \"" + name + "\"");
   if (model.frame != spec.frame || model.output_in_sigma != spec.output_in_sigma)
     throw differs("another frame or scale of the output");
-  if (model.referee != spec.referee || (model.moments.size() > 0) != spec.covariance_moments)
-    throw differs("another referee or covariance head");
+  if ((model.moments.size() > 0) != spec.covariance_moments) throw differs("another covariance head");
   if (model.base != spec.base || model.reference != spec.reference || model.covariance_of != spec.covariance_of)
     throw differs("another base, reference or covariance_of");
-  if (model.kappa != spec.kappa)
-    throw differs(fmt::format("kappa {}, where the study has {}", model.kappa, spec.kappa));
+  if (spec.bounds.gate && !model.gate)
+    throw InputError(where, "holds no box, which the gate of \"" + name + "\" wants", remedy + ", or gate = false");
   for (const std::string& member : spec.members()) {
     const auto found = model.trackers.find(member);
     const std::string configuration = configuration_line(member);

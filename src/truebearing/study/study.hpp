@@ -65,17 +65,19 @@ class Study {
   toml::table configuration_of(const std::string& name) const;
   /// The same on one line with its kind: how a model file remembers a tracker.
   std::string configuration_line(const std::string& name) const;
-  /// A tracker of the study, ready to step; a corrected one brings its own ensemble and reads its model file.
-  std::unique_ptr<Tracker> make_tracker(const std::string& name) const;
+  /// A tracker of the study, ready to step; a corrected one brings its own ensemble, and its model from `models`, else
+  /// from its file.
+  std::unique_ptr<Tracker> make_tracker(const std::string& name, const CorrectionModels& models = {}) const;
   /// The trackers of those names (none of them corrected), in that order.
   Ensemble make_ensemble(const std::vector<std::string>& names) const;
-  /// All shown trackers over one ensemble; models from `models`, else from their files.
+  /// All shown trackers over one ensemble; models likewise.
   TrackerSet make_tracker_set(const CorrectionModels& models = {}) const;
 
   /// The model of a corrected tracker from its file, checked against this study. Throws InputError that names the
   /// command that makes it where it is missing or was made for other trackers or features.
   std::shared_ptr<const CorrectionModel> load_model(const std::string& name) const;
-  /// Throws InputError where the model was not trained for what the study says of that tracker.
+  /// Throws InputError where the model was not trained for what the study says of that tracker. What bounds a
+  /// correction is the study's to say, but a gate wants the box of its model.
   void check_model(const std::string& name, const CorrectionModel& model, const std::string& where) const;
 
   /// Options of a comparison as the study has them.

@@ -59,13 +59,13 @@ CorrectionModel model(int rules) {
   };
   CorrectionModel model;
   model.space = &line_space();
-  model.base = "plain";
-  model.reference = "tuned";
-  model.covariance_of = "wide";
-  model.features = {{FeatureKind::log_step, "", "", 0.0, 0.0, 1.0},
-                    {FeatureKind::companion_difference, "position_m", "wide", 0.0, 0.0, 1000.0},
-                    {FeatureKind::companion_difference, "velocity_mps", "wide", 0.0, 0.0, 100.0},
-                    {FeatureKind::log_mean_nis, "", "", 0.0, 0.05, 1.0}};
+  model.design.base = "plain";
+  model.design.reference = "tuned";
+  model.design.covariance_of = "wide";
+  model.design.features = {{FeatureKind::log_step, "", "", 0.0, 0.0, 1.0},
+                           {FeatureKind::companion_difference, "position_m", "wide", 0.0, 0.0, 1000.0},
+                           {FeatureKind::companion_difference, "velocity_mps", "wide", 0.0, 0.0, 100.0},
+                           {FeatureKind::log_mean_nis, "", "", 0.0, 0.05, 1.0}};
   model.network = FuzzyNetwork({.input_mean = Eigen::VectorXd::Zero(kFeatures),
                                 .input_scale = Eigen::VectorXd::Ones(kFeatures),
                                 .centres = spread(rules, kFeatures, 2.0),

@@ -37,13 +37,13 @@ class RowMaker {
       : ensemble_(ensemble.fresh()),
         from_step_(correction.training.from_step),
         every_s_(correction.training.every_s),
-        base_(ensemble_.index(correction.base)),
-        reference_(ensemble_.index(correction.reference)),
-        source_(ensemble_.index(correction.covariance_of)),
-        output_in_sigma_(correction.output_in_sigma),
+        base_(ensemble_.index(correction.design.base)),
+        reference_(ensemble_.index(correction.design.reference)),
+        source_(ensemble_.index(correction.design.covariance_of)),
+        output_in_sigma_(correction.design.output_in_sigma),
         truth_index_(std::move(truth_index)),
         scorer_(truth_space, ensemble_.tracker(base_).space()),
-        prototype_(correction.features, ensemble_.tracker(base_).space(), correction.frame,
+        prototype_(correction.design.features, ensemble_.tracker(base_).space(), correction.design.frame,
                    [&](const std::string& name) {
                      return ensemble_.tracker(name.empty() ? base_ : ensemble_.index(name)).blocks();
                    }) {
@@ -145,7 +145,7 @@ Eigen::VectorXd mahalanobis_lengths(const Eigen::MatrixXd& errors, const Eigen::
 
 TeacherSet collect_teacher_set(const Ensemble& ensemble, const CorrectionSpec& correction, const Scenario& scenario,
                                const TeacherOptions& options) {
-  const StateSpace& space = ensemble.tracker(ensemble.index(correction.base)).space();
+  const StateSpace& space = ensemble.tracker(ensemble.index(correction.design.base)).space();
   std::vector<int> truth_index;
   for (const std::string& component : space.components) {
     truth_index.push_back(scenario.truth_space().component_index(component));
@@ -165,14 +165,14 @@ TeacherSet collect_teacher_set(const Ensemble& ensemble, const CorrectionSpec& c
       },
       options.progress);
 
-  const Eigen::Index d = static_cast<Eigen::Index>(correction.features.size());
+  const Eigen::Index d = static_cast<Eigen::Index>(correction.design.features.size());
   const Eigen::Index n = space.size();
   Eigen::Index total = 0;
   for (const Rows& rows : by_run) total += static_cast<Eigen::Index>(rows.size()) / row_size(d, n);
   if (total == 0)
     throw InputError("training", "no step of the training runs can be taught", "records, truth and finite features");
-  TeacherSet set{correction.features,       Eigen::MatrixXd(total, d),     Eigen::MatrixXd(total, n),
-                 Eigen::MatrixXd(total, n), Eigen::MatrixXd(total, n * n), Eigen::MatrixXd(total, n * n)};
+  TeacherSet set{correction.design.features, Eigen::MatrixXd(total, d),     Eigen::MatrixXd(total, n),
+                 Eigen::MatrixXd(total, n),  Eigen::MatrixXd(total, n * n), Eigen::MatrixXd(total, n * n)};
   Eigen::Index next = 0;
   for (const Rows& rows : by_run) {
     const Eigen::Index count = static_cast<Eigen::Index>(rows.size()) / row_size(d, n);

@@ -447,9 +447,9 @@ TEST(Correction, BlockThatTheRecordsLackIsRefusedWhenItIsBuilt) {
   ensemble.add("plain", std::make_unique<ScriptedTracker>(RecordBlocks{}));
   CorrectionModel model = line_model(kResidual, constant(1, {0.0, 0.0}));
   EXPECT_THAT(error_message([&] { Correction(shared(model), ensemble); }), HasSubstr("innovation"));
-  model.features = {{.kind = FeatureKind::gain, .component = "position_m"}};
+  model.design.features = {{.kind = FeatureKind::gain, .component = "position_m"}};
   EXPECT_THAT(error_message([&] { Correction(shared(model), ensemble); }), HasSubstr("gain"));
-  model.features = {{.kind = FeatureKind::prediction_difference, .component = "position_m"}};
+  model.design.features = {{.kind = FeatureKind::prediction_difference, .component = "position_m"}};
   EXPECT_THAT(error_message([&] { Correction(shared(model), ensemble); }), HasSubstr("prediction"));
 }
 
@@ -459,7 +459,7 @@ TEST(Correction, ModelWhosePartsDisagreeIsRefused) {
   const CorrectionModel good = line_model(kResidual, constant(1, {0.0, 0.0}));
   EXPECT_EQ(error_message([&] { Correction(shared(good), ensemble); }), "no error");
   CorrectionModel bad = good;
-  bad.features.push_back({.kind = FeatureKind::log_step});
+  bad.design.features.push_back({.kind = FeatureKind::log_step});
   EXPECT_THAT(error_message([&] { Correction(shared(bad), ensemble); }), HasSubstr("features"));
   bad = good;
   bad.inflation[0] = 0.0;

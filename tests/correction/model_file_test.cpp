@@ -24,7 +24,7 @@ CorrectionModel model_to_save() {
   RandomStream random({.seed = 4}, StreamId::test);
   CorrectionModel model =
       testing::line_model(testing::radar_features(), testing::random_parameters(random, 4, 5, 2), "plain", "tuned", "wide");
-  model.features.back() = {.kind = FeatureKind::innovation_average, .companion = "wide", .alpha = 1.0 / 3.0};
+  model.design.features.back() = {.kind = FeatureKind::innovation_average, .companion = "wide", .alpha = 1.0 / 3.0};
   model.gate = testing::box(4, -1.0 / 3.0, 1e-300, 2.5);
   model.inflation = Eigen::VectorXd::NullaryExpr(5, [&] { return std::pow(10.0, random.uniform(-300.0, 300.0)); });
   model.usage = Eigen::VectorXd::NullaryExpr(5, [&] { return random.uniform(); });
@@ -51,19 +51,19 @@ TEST(ModelFile, SaveLoadSaveIsByteIdentical) {
   const CorrectionModel original = model_to_save();
   EXPECT_EQ(loaded.network.parameters(), original.network.parameters());
   EXPECT_EQ(loaded.gate, original.gate);
-  EXPECT_EQ(loaded.features, original.features);
+  EXPECT_EQ(loaded.design.features, original.design.features);
   EXPECT_EQ(loaded.trackers, original.trackers);
   EXPECT_EQ(loaded.inflation, original.inflation);
 }
 
 TEST(ModelFile, FeaturesOfANeighbourAreKept) {
   CorrectionModel model = model_to_save();
-  model.features[0] = {.kind = FeatureKind::neighbour_closeness};
-  model.features[1] = {.kind = FeatureKind::neighbour_difference, .component = "velocity_mps", .scale = 0.1};
-  model.features[2] = {.kind = FeatureKind::neighbour_difference, .component = "position_m", .scale_is_sigma = true};
+  model.design.features[0] = {.kind = FeatureKind::neighbour_closeness};
+  model.design.features[1] = {.kind = FeatureKind::neighbour_difference, .component = "velocity_mps", .scale = 0.1};
+  model.design.features[2] = {.kind = FeatureKind::neighbour_difference, .component = "position_m", .scale_is_sigma = true};
   const std::string saved = model_text(model);
   const CorrectionModel loaded = parse_model(saved, "model.json");
-  EXPECT_EQ(loaded.features, model.features);
+  EXPECT_EQ(loaded.design.features, model.design.features);
   EXPECT_EQ(model_text(loaded), saved);
 }
 

@@ -77,9 +77,9 @@ TEST(PlaneCorrection, ModelFileKeepsEverything) {
   const std::string saved = model_text(model);
   const CorrectionModel loaded = parse_model(saved, "model.json");
   EXPECT_EQ(model_text(loaded), saved);
-  EXPECT_EQ(loaded.frame, Frame::track);
-  EXPECT_TRUE(loaded.output_in_sigma);
-  EXPECT_EQ(loaded.features, model.features);
+  EXPECT_EQ(differences(loaded.design, model.design), "");
+  EXPECT_EQ(loaded.design.frame, Frame::track);
+  EXPECT_TRUE(loaded.design.output_in_sigma);
   EXPECT_EQ(loaded.moments, model.moments);
   EXPECT_EQ(loaded.inflation.size(), 0);
 }
@@ -91,6 +91,8 @@ TEST(PlaneCorrection, MomentsThatAreNoCovarianceAreRefused) {
   model = plane_model(6);
   model.inflation = Eigen::VectorXd::Ones(8);
   EXPECT_THROW(model.validate(), InputError);
+  model.design.covariance_moments = false;
+  EXPECT_THROW(model.validate(), InputError) << "with both heads, whichever the design names";
 }
 
 }  // namespace

@@ -233,6 +233,7 @@ TEST(Study, ModelThatWasTrainedForSomethingElseIsRefused) {
   EXPECT_THAT(load("offset = 0.05", "offset = 0.06"), says("features"));
   EXPECT_THAT(load("  { kind = \"log_step\" },\n", ""), says("features"));
   EXPECT_THAT(load("reference = \"tuned\"", "reference = \"wide\""), says("reference"));
+  EXPECT_THAT(load("kappa = 3.0", "output_in = \"sigma\"\ncovariance = \"moments\""), says("output_in, covariance"));
   EXPECT_THAT(load("variance = [999.0, 999.0]", "variance = [999.0, 998.0]"), says("plain"));
   EXPECT_THAT(load("variance = [1e6, 53333.3]", "variance = [1e6, 53333.4]"), says("wide"));
   folder.write("small.parameters.toml", replaced(testing::kParameters, "53000.0", "53001.0"));

@@ -36,11 +36,11 @@ TEST(TrainCorrection, ModelRemembersWhatItWasTrainedFor) {
   TrainReport report;
   const CorrectionModel model = train(study, 5, 0, &report);
   EXPECT_EQ(report.rows, 20 * 40);
-  EXPECT_EQ(model.base, "plain");
-  EXPECT_EQ(model.reference, "tuned");
-  EXPECT_EQ(model.covariance_of, "wide");
   EXPECT_EQ(model.network.rules(), 4);
-  EXPECT_EQ(model.features, study.tracker("nfnn").correction->features);
+  EXPECT_EQ(model.design, study.tracker("nfnn").correction->design);
+  EXPECT_EQ(model.design.base, "plain");
+  EXPECT_EQ(model.design.reference, "tuned");
+  EXPECT_EQ(model.design.covariance_of, "wide");
   EXPECT_EQ(model.trackers.size(), 3u);
   EXPECT_EQ(model.trackers.at("tuned"), study.configuration_line("tuned"));
   EXPECT_EQ(model.provenance.at("study"), "small");

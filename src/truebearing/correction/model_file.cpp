@@ -179,26 +179,26 @@ CorrectionModel model_from(const Json& json, const std::string& name) {
 
   CorrectionModel model;
   model.space = &state_space_of_components(read_texts(file, "state", kMaxDimension));
-  model.base = file.text("base");
-  model.reference = file.text("reference");
-  model.covariance_of = file.text("covariance_of");
+  model.design.base = file.text("base");
+  model.design.reference = file.text("reference");
+  model.design.covariance_of = file.text("covariance_of");
   ObjectReader trackers = file.object("trackers");
   for (const auto& [key, value] : json["trackers"].items()) model.trackers[key] = trackers.text(key);
 
   if (file.has("frame")) {
     const std::string frame = file.text("frame");
-    model.frame = frame_of(frame);
-    if (frame != to_string(model.frame))
+    model.design.frame = frame_of(frame);
+    if (frame != to_string(model.design.frame))
       throw file.error("frame", "is \"" + frame + "\"", suggestion(frame, frame_names()));
   }
   if (file.has("output_in")) {
     if (file.text("output_in") != kSigma)
       throw file.error("output_in", "is not \"sigma\"", "\"sigma\", or no such key");
-    model.output_in_sigma = true;
+    model.design.output_in_sigma = true;
   }
   const Json& features = file.array("features", 1, FuzzyNetwork::kMaxInputs);
   for (std::size_t i = 0; i < features.size(); ++i)
-    model.features.push_back(read_feature(ObjectReader(features[i], name, fmt::format("features[{}]", i))));
+    model.design.features.push_back(read_feature(ObjectReader(features[i], name, fmt::format("features[{}]", i))));
   const auto d = static_cast<Eigen::Index>(features.size());
   const auto n = static_cast<Eigen::Index>(model.space->size());
 
@@ -222,7 +222,7 @@ CorrectionModel model_from(const Json& json, const std::string& name) {
   parameters.centres.resize(M, d);
   parameters.widths.resize(M, d);
   parameters.consequents.resize(M, n);
-  const bool moments = file.has("covariance");
+  const bool moments = model.design.covariance_moments = file.has("covariance");
   if (moments && file.text("covariance") != kMoments)
     throw file.error("covariance", "is not \"moments\"", "\"moments\", or no such key");
   model.inflation.resize(moments ? 0 : M);
@@ -272,15 +272,15 @@ std::string model_text(const CorrectionModel& model) {
   json["format"] = kFormat;
   json["version"] = kVersion;
   json["state"] = model.space->components;
-  json["base"] = model.base;
-  json["reference"] = model.reference;
-  json["covariance_of"] = model.covariance_of;
+  json["base"] = model.design.base;
+  json["reference"] = model.design.reference;
+  json["covariance_of"] = model.design.covariance_of;
   json["trackers"] = OrderedJson::object();
   for (const auto& [name, configuration] : model.trackers) json["trackers"][name] = configuration;
-  if (model.frame != Frame::state) json["frame"] = std::string(to_string(model.frame));
-  if (model.output_in_sigma) json["output_in"] = kSigma;
+  if (model.design.frame != Frame::state) json["frame"] = std::string(to_string(model.design.frame));
+  if (model.design.output_in_sigma) json["output_in"] = kSigma;
   json["features"] = OrderedJson::array();
-  for (const FeatureSpec& feature : model.features) json["features"].push_back(feature_json(feature));
+  for (const FeatureSpec& feature : model.design.features) json["features"].push_back(feature_json(feature));
   json["normalisation"] = {{"input_mean", array_json(parameters.input_mean)},
                            {"input_scale", array_json(parameters.input_scale)},
                            {"input_clip", parameters.input_clip},
@@ -292,13 +292,13 @@ std::string model_text(const CorrectionModel& model) {
                     {"edge_fraction", model.gate->edge_fraction},
                     {"largest_disagreement", limit_json(model.gate->largest_disagreement)},
                     {"disagreement_edge_fraction", model.gate->disagreement_edge_fraction}};
-  if (model.moments.size() > 0) json["covariance"] = kMoments;
+  if (model.design.covariance_moments) json["covariance"] = kMoments;
   json["rules"] = OrderedJson::array();
   for (Eigen::Index j = 0; j < parameters.centres.rows(); ++j) {
     OrderedJson rule{{"centre", array_json(parameters.centres.row(j))},
                      {"width", array_json(parameters.widths.row(j))},
                      {"consequent", array_json(parameters.consequents.row(j))}};
-    if (model.moments.size() > 0)
+    if (model.design.covariance_moments)
       rule["moments"] = array_json(model.moments.row(j));
     else
       rule["inflation"] = model.inflation[j];

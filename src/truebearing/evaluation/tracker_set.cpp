@@ -14,7 +14,7 @@ void TrackerSet::show_member(const std::string& name) {
 
 void TrackerSet::show_correction(std::string name, std::shared_ptr<const CorrectionModel> model,
                                  CorrectionBounds bounds) {
-  const int base = ensemble_.index(model->base);
+  const int base = ensemble_.index(model->design.base);
   corrections_.emplace_back(std::move(model), ensemble_, std::move(bounds));
   entries_.push_back({std::move(name), base, static_cast<int>(corrections_.size()) - 1, {}});
 }

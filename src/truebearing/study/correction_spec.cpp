@@ -1,6 +1,5 @@
 #include "truebearing/study/correction_spec.hpp"
 
-#include <algorithm>
 #include <limits>
 
 namespace truebearing {
@@ -110,32 +109,21 @@ void read_gate(TableReader& table, CorrectionSpec& spec) {
 
 }  // namespace
 
-std::vector<std::string> CorrectionSpec::members() const {
-  std::vector<std::string> names;
-  const auto add = [&](const std::string& name) {
-    if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-  };
-  add(base);
-  add(reference);
-  add(covariance_of);
-  for (const FeatureSpec& feature : features) add(feature.companion);
-  return names;
-}
-
 CorrectionSpec read_correction_spec(TableReader& table) {
   CorrectionSpec spec;
-  spec.base = table.text("base");
-  spec.reference = table.text_or("reference", spec.base);
-  spec.covariance_of = table.text_or("covariance_of", spec.base);
+  CorrectionDesign& design = spec.design;
+  design.base = table.text("base");
+  design.reference = table.text_or("reference", design.base);
+  design.covariance_of = table.text_or("covariance_of", design.base);
   spec.bounds.kappa = read_kappa(table);
   spec.bounds.referee = read_referee(table);
   read_gate(table, spec);
-  spec.frame = frame_of(table.choice_or("frame", frame_names(), "state"));
-  spec.output_in_sigma = table.choice_or("output_in", {"units", "sigma"}, "units") == "sigma";
-  spec.covariance_moments = table.choice_or("covariance", {"inflation", "moments"}, "inflation") == "moments";
+  design.frame = frame_of(table.choice_or("frame", frame_names(), "state"));
+  design.output_in_sigma = table.choice_or("output_in", {"units", "sigma"}, "units") == "sigma";
+  design.covariance_moments = table.choice_or("covariance", {"inflation", "moments"}, "inflation") == "moments";
   spec.model = table.resolve(table.text("model"));
-  for (TableReader& feature : table.tables("features")) spec.features.push_back(read_feature(feature));
-  if (spec.features.empty())
+  for (TableReader& feature : table.tables("features")) design.features.push_back(read_feature(feature));
+  if (design.features.empty())
     throw table.error("features", "is missing or empty", "an array of tables with a `kind` each");
   TableReader training = table.table("training");
   spec.training = read_training(training);

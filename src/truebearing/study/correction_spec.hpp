@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "truebearing/correction/correction_bounds.hpp"
-#include "truebearing/correction/feature.hpp"
+#include "truebearing/correction/correction_design.hpp"
 #include "truebearing/io/table_reader.hpp"
 
 namespace truebearing {
@@ -56,20 +56,11 @@ struct BoxSpec {
 };
 
 struct CorrectionSpec {
-  std::string base;
-  std::string reference;
-  std::string covariance_of;
+  CorrectionDesign design;
   CorrectionBounds bounds;
   BoxSpec box;
-  Frame frame = Frame::state;
-  bool output_in_sigma = false;
-  bool covariance_moments = false;  ///< covariance head: residual moments per rule, not one inflation
-  std::vector<FeatureSpec> features;
   std::filesystem::path model;
   TrainingSpec training;
-
-  /// Names of all trackers that it looks at, each once: base, reference, covariance source, companions.
-  std::vector<std::string> members() const;
 };
 
 CorrectionSpec read_correction_spec(TableReader& table);

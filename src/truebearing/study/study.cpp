@@ -205,7 +205,7 @@ void Study::check_trackers() {
       check_replay(spec, *truebearing::make_tracker(spec.kind, reader));
       continue;
     }
-    for (const std::string& member : spec.correction->members())
+    for (const std::string& member : spec.correction->design.members())
       if (tracker(member).correction)
         throw InputError(path_.string() + ": trackers." + spec.name,
                          "looks at \"" + member + "\", which is itself corrected", "trackers of other kinds");
@@ -215,12 +215,12 @@ void Study::check_trackers() {
                          "is no quantity of the scenario's truth");
     // Features that the records cannot give are refused here, not at the first step.
     const auto made = [&](const std::string& name) {
-      const TrackerSpec& member = tracker(name.empty() ? spec.correction->base : name);
+      const TrackerSpec& member = tracker(name.empty() ? spec.correction->design.base : name);
       TableReader reader(member.configuration, path_.string(), "trackers." + member.name);
       return truebearing::make_tracker(member.kind, reader);
     };
     try {
-      FeatureExtractor(spec.correction->features, made("")->space(), spec.correction->frame,
+      FeatureExtractor(spec.correction->design.features, made("")->space(), spec.correction->design.frame,
                        [&](const std::string& name) { return made(name)->blocks(); });
     } catch (const InputError& error) {
       throw InputError(path_.string() + ": trackers." + spec.name + ": " + error.where(), error.found(), error.valid());
@@ -278,7 +278,7 @@ std::unique_ptr<Tracker> Study::make_tracker(const std::string& name, const Corr
   const TrackerSpec& spec = tracker(name);
   if (spec.correction) {
     const auto given = models.find(name);
-    return std::make_unique<CorrectedTracker>(make_ensemble(spec.correction->members()),
+    return std::make_unique<CorrectedTracker>(make_ensemble(spec.correction->design.members()),
                                               given == models.end() ? load_model(name) : given->second,
                                               spec.correction->bounds);
   }
@@ -304,7 +304,7 @@ TrackerSet Study::make_tracker_set(const CorrectionModels& models) const {
       add(spec.name);
       continue;
     }
-    for (const std::string& member : spec.correction->members()) add(member);
+    for (const std::string& member : spec.correction->design.members()) add(member);
   }
   TrackerSet set(make_ensemble(members));
   for (const TrackerSpec& spec : trackers_) {
@@ -333,15 +333,11 @@ void Study::check_model(const std::string& name, const CorrectionModel& model, c
   const CorrectionSpec& spec = tracker(name).correction.value();
   const std::string remedy = fmt::format("run `truebearing train {}`", path_.string());
   const auto differs = [&](const std::string& what) { return InputError(where, "was trained for " + what, remedy); };
-  if (model.features != spec.features) throw differs("other features than the study has for \"" + name + "\"");
-  if (model.frame != spec.frame || model.output_in_sigma != spec.output_in_sigma)
-    throw differs("another frame or scale of the output");
-  if ((model.moments.size() > 0) != spec.covariance_moments) throw differs("another covariance head");
-  if (model.base != spec.base || model.reference != spec.reference || model.covariance_of != spec.covariance_of)
-    throw differs("another base, reference or covariance_of");
+  if (model.design != spec.design)
+    throw differs("another " + differences(model.design, spec.design) + " than the study has for \"" + name + "\"");
   if (spec.bounds.gate && !model.gate)
     throw InputError(where, "holds no box, which the gate of \"" + name + "\" wants", remedy + ", or gate = false");
-  for (const std::string& member : spec.members()) {
+  for (const std::string& member : spec.design.members()) {
     const auto found = model.trackers.find(member);
     const std::string configuration = configuration_line(member);
     if (found == model.trackers.end() || found->second != configuration)

@@ -8,40 +8,19 @@
 #include "truebearing/correction/limit_kappa.hpp"
 
 namespace truebearing {
-namespace {
-
-int member(const Ensemble& ensemble, const std::string& name, const StateSpace& space) {
-  const int index = ensemble.index(name);
-  if (index < 0) throw InputError("correction", "needs the tracker \"" + name + "\", which does not run beside it");
-  if (ensemble.tracker(index).space() != space)
-    throw InputError("correction", "the tracker \"" + name + "\" has the state " + ensemble.tracker(index).space().name,
-                     "the state " + space.name);
-  return index;
-}
-
-}  // namespace
 
 Correction::Correction(std::shared_ptr<const CorrectionModel> model, const Ensemble& ensemble, CorrectionBounds bounds)
-    : model_(std::move(model)),
-      bounds_(std::move(bounds)),
-      base_(member(ensemble, model_->base, *model_->space)),
-      reference_(member(ensemble, model_->reference, *model_->space)),
-      source_(member(ensemble, model_->covariance_of, *model_->space)),
-      prototype_(model_->features, *model_->space, model_->frame, [&](const std::string& name) {
-        return ensemble.tracker(name.empty() ? base_ : member(ensemble, name, *model_->space)).blocks();
-      }) {
+    : model_(std::move(model)), bounds_(std::move(bounds)), inputs_(model_->design, *model_->space, ensemble) {
   model_->validate();
   bounds_.validate();
-  for (const std::string& name : prototype_.companions()) companions_.push_back(member(ensemble, name, *model_->space));
-  companion_records_.resize(companions_.size());
-  if (bounds_.referee && !ensemble.tracker(base_).blocks().measures_position)
-    throw InputError("correction", "has a referee, and \"" + model_->base + "\" measures no position",
+  if (bounds_.referee && !ensemble.tracker(inputs_.base()).blocks().measures_position)
+    throw InputError("correction", "has a referee, and \"" + model_->design.base + "\" measures no position",
                      "a base that measures positions, or no referee");
   reset();
 }
 
 void Correction::reset() {
-  tracks_.assign(1, Track{-1, false, prototype_, {}});
+  tracks_.assign(1, Track{-1, false, inputs_.extractor(), {}});
   records_.assign(1, StepRecord{});
 }
 
@@ -49,7 +28,7 @@ Correction::Track& Correction::track_of(int id) {
   auto slot = std::find_if(tracks_.begin(), tracks_.end(), [&](const Track& t) { return t.id == id; });
   if (slot == tracks_.end()) {
     slot = std::find_if(tracks_.begin(), tracks_.end(), [](const Track& t) { return !t.seen; });
-    if (slot == tracks_.end()) slot = tracks_.insert(tracks_.end(), Track{id, true, prototype_, {}});
+    if (slot == tracks_.end()) slot = tracks_.insert(tracks_.end(), Track{id, true, inputs_.extractor(), {}});
     slot->referee = {};
   }
   slot->id = id;
@@ -58,46 +37,40 @@ Correction::Track& Correction::track_of(int id) {
 }
 
 std::span<const StepRecord> Correction::correct(const Ensemble& ensemble) {
-  const std::span<const StepRecord> references = ensemble.records(reference_);
+  const std::span<const StepRecord> references = ensemble.records(inputs_.reference());
   if (records_.size() < references.size()) records_.resize(references.size());
   for (Track& track : tracks_)
     track.seen =
         std::any_of(references.begin(), references.end(), [&](const StepRecord& r) { return r.track == track.id; });
 
   for (std::size_t i = 0; i < references.size(); ++i) {
-    const StepRecord& reference = references[i];
-    const StepRecord* base = ensemble.record(base_, reference.track);
-    const StepRecord* source = ensemble.record(source_, reference.track);
-    for (std::size_t c = 0; c < companions_.size(); ++c)
-      companion_records_[c] = ensemble.record(companions_[c], reference.track);
-    if (!base || !source || base->status == StepStatus::failed) {
-      records_[i] = reference;
-      records_[i].correction = CorrectionOutcome{.base_x = reference.x, .base_P = reference.P};
+    const CorrectionInputs::Records step = inputs_.records(ensemble, references[i].track);
+    if (!step.complete()) {
+      records_[i] = references[i];
+      records_[i].correction = CorrectionOutcome{.base_x = references[i].x, .base_P = references[i].P};
       continue;
     }
-    Track& track = track_of(reference.track);
-    track.extractor.extract(*base, companion_records_, features_);
-    if (bounds_.referee) track.referee.judge(*base, *bounds_.referee);
-    correct_record(*base, reference, *source, track, records_[i]);
+    Track& track = track_of(references[i].track);
+    inputs_.extract(ensemble, *step.base, track.extractor, features_);
+    if (bounds_.referee) track.referee.judge(*step.base, *bounds_.referee);
+    correct_record(step, track, records_[i]);
   }
   return {records_.data(), references.size()};
 }
 
-void Correction::correct_record(const StepRecord& base, const StepRecord& reference, const StepRecord& source,
-                                Track& track, StepRecord& corrected) {
-  const FuzzyNetwork& network = model_->network;
-  const FrameRotation& rotation = track.extractor.rotation();
+void Correction::correct_record(const CorrectionInputs::Records& step, Track& track, StepRecord& corrected) {
+  const StepRecord& base = *step.base;
+  const StepRecord& reference = *step.reference;
   corrected = base;
   corrected.correction = CorrectionOutcome{.base_x = base.x, .base_P = base.P};
   corrected.x = reference.x;
   corrected.P = reference.P;
   if (!features_.allFinite()) return;  // g = 0
 
-  network.strengths(features_, phi_);
-  BoundedVector output = network.output(phi_);
-  if (model_->output_in_sigma) output.array() *= rotation.covariance(base.P).diagonal().array().sqrt();
-  const BoundedVector d = base.x + rotation.vector(output) - reference.x;
-  const BoundedMatrix P_c = rotation.covariance(model_->head_covariance(phi_, rotation.covariance(source.P)));
+  model_->network.strengths(features_, phi_);
+  const OutputUnits units = inputs_.units(track.extractor, base);
+  const BoundedVector d = base.x + units.state(model_->network.output(phi_)) - reference.x;
+  const BoundedMatrix P_c = units.in_frame(model_->head_covariance(phi_, units.in_frame(step.source->P)));
   const Limited limited = limit_kappa(reference.P, d, bounds_.kappa);
   const bool gated = bounds_.gate && model_->gate;
   double g = gated ? model_->gate->weight(features_, disagreement(d, P_c, reference.P)) : 1.0;

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "truebearing/correction/correction_bounds.hpp"
+#include "truebearing/correction/correction_inputs.hpp"
 #include "truebearing/correction/correction_model.hpp"
-#include "truebearing/correction/feature_extractor.hpp"
 #include "truebearing/tracker/ensemble.hpp"
 
 namespace truebearing {
@@ -40,22 +40,15 @@ class Correction {
   };
 
   Track& track_of(int id);
-  void correct_record(const StepRecord& base, const StepRecord& reference, const StepRecord& source, Track& track,
-                      StepRecord& corrected);
+  void correct_record(const CorrectionInputs::Records& step, Track& track, StepRecord& corrected);
 
   std::shared_ptr<const CorrectionModel> model_;
   CorrectionBounds bounds_;
-  int base_;
-  int reference_;
-  int source_;
-  std::vector<int> companions_;
-
-  FeatureExtractor prototype_;
+  CorrectionInputs inputs_;
   std::vector<Track> tracks_;
-  std::vector<const StepRecord*> companion_records_;
   std::vector<StepRecord> records_;
   // Work space of one step.
-  FuzzyNetwork::Inputs features_;
+  CorrectionInputs::Features features_;
   FuzzyNetwork::Strengths phi_;
 };
 

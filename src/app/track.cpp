@@ -175,8 +175,7 @@ void track(const Options& options) {
       for (int i = 0; i < trackers.size(); ++i)
         for (StepRecord record : trackers.records(i)) {
           record.track += number;  // those of a step log are numbered 0 while they run
-          if (!record.correction)
-            consistency[static_cast<std::size_t>(i)].add(record);  // a correction has no innovations
+          consistency[static_cast<std::size_t>(i)].add(record);
           writer.add(trackers.name(i), record);
         }
     }

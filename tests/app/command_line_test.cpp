@@ -190,6 +190,9 @@ TEST(Program, TrackWritesInnovationsWhole) {
   EXPECT_FALSE(plain.front().innovation);
   ASSERT_TRUE(plain.back().innovation);
   EXPECT_EQ(plain.back().innovation->nu.size(), 2);
+  const std::vector<StepRecord> corrected = read_step_log(folder.path() / "steps.csv", "nfnn").records;
+  EXPECT_EQ(corrected.size(), plain.size());
+  for (const StepRecord& record : corrected) EXPECT_FALSE(record.innovation) << "which a correction has none of";
 }
 
 TEST(Program, SimulatesBearingsOfARecordedTrack) {

@@ -32,7 +32,6 @@ class CorrectedTracker final : public Tracker {
     return std::make_unique<CorrectedTracker>(ensemble_.fresh(), model_, bounds_);
   }
   const StateSpace& space() const override { return *model_->space; }
-  RecordBlocks blocks() const override { return ensemble_.tracker(ensemble_.index(model_->design.base)).blocks(); }
   TrackerCounts counts() const override { return ensemble_.tracker(ensemble_.index(model_->design.base)).counts(); }
   std::span<const TrackEvent> events() const override {
     return ensemble_.tracker(ensemble_.index(model_->design.base)).events();

@@ -8,6 +8,22 @@
 #include "truebearing/correction/limit_kappa.hpp"
 
 namespace truebearing {
+namespace {
+
+// The reference's estimate at `step`, and nothing of what a tracker predicted, innovated or gained: the slot is one of
+// corrected records, whose blocks of that kind nobody fills.
+void begin_record(const StepRecord& step, const StepRecord& reference, StepRecord& corrected) {
+  corrected.track = step.track;
+  corrected.time_s = step.time_s;
+  corrected.status = step.status;
+  corrected.space = step.space;
+  corrected.sensor = step.sensor;
+  corrected.x = reference.x;
+  corrected.P = reference.P;
+  corrected.correction.emplace();
+}
+
+}  // namespace
 
 Correction::Correction(std::shared_ptr<const CorrectionModel> model, const Ensemble& ensemble, CorrectionBounds bounds)
     : model_(std::move(model)), bounds_(std::move(bounds)), inputs_(model_->design, *model_->space, ensemble) {
@@ -46,8 +62,7 @@ std::span<const StepRecord> Correction::correct(const Ensemble& ensemble) {
   for (std::size_t i = 0; i < references.size(); ++i) {
     const CorrectionInputs::Records step = inputs_.records(ensemble, references[i].track);
     if (!step.complete()) {
-      records_[i] = references[i];
-      records_[i].correction = CorrectionOutcome{.base_x = references[i].x, .base_P = references[i].P};
+      begin_record(references[i], references[i], records_[i]);
       continue;
     }
     Track& track = track_of(references[i].track);
@@ -61,10 +76,9 @@ std::span<const StepRecord> Correction::correct(const Ensemble& ensemble) {
 void Correction::correct_record(const CorrectionInputs::Records& step, Track& track, StepRecord& corrected) {
   const StepRecord& base = *step.base;
   const StepRecord& reference = *step.reference;
-  corrected = base;
-  corrected.correction = CorrectionOutcome{.base_x = base.x, .base_P = base.P};
-  corrected.x = reference.x;
-  corrected.P = reference.P;
+  begin_record(base, reference, corrected);
+  corrected.correction->base_x = base.x;
+  corrected.correction->base_P = base.P;
   if (!features_.allFinite()) return;  // g = 0
 
   model_->network.strengths(features_, phi_);

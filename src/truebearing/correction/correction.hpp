@@ -24,8 +24,9 @@ class Correction {
   /// another state space or lacks what a feature or the referee reads, or where model or bounds are invalid.
   Correction(std::shared_ptr<const CorrectionModel> model, const Ensemble& ensemble, CorrectionBounds bounds = {});
 
-  /// One corrected record per track of the reference, from the ensemble's last step. Call it once per step. Valid until
-  /// the next call. Allocates only when a track appears.
+  /// One corrected record per track of the reference, from the ensemble's last step: an estimate, its covariance and
+  /// the outcome of the correction, without a prediction, innovation or gain. Call it once per step. Valid until the
+  /// next call. Allocates only when a track appears.
   std::span<const StepRecord> correct(const Ensemble& ensemble);
   void reset();
 

@@ -168,9 +168,11 @@ TEST(Study, SetsAreWhatItIsComparedOn) {
   const std::vector<NamedScenario> sets = study.evaluation_scenarios();
   ASSERT_EQ(sets.size(), 2u);
   EXPECT_EQ(sets[1].name, "two");
-  folder.write("plane.toml", "kind = \"planar_flight\"\n");
+  const std::string plane = std::string(TRUEBEARING_SOURCE_DIR) + "/data/scenarios/manoeuvre_2d.toml";
   for (const auto& [text, says] :
-       std::vector<std::pair<std::string, std::string>>{{"one = 1", "sets.one"}, {"one = \"nowhere.toml\"", "nowhere.toml"}})
+       std::vector<std::pair<std::string, std::string>>{{"one = 1", "sets.one"},
+                                                        {"one = \"nowhere.toml\"", "nowhere.toml"},
+                                                        {"one = \"" + plane + "\"", "has another truth"}})
     EXPECT_THAT(error_message([&] { Study::load(write_study(folder, kStudy + "\n[sets]\n" + text + "\n")); }), HasSubstr(says));
 }
 

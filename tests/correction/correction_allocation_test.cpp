@@ -142,7 +142,7 @@ TEST(Allocation, OfATrackerThatAllocatesIsCaught) {
 TEST(TrackerSet, StepsAllocateNothing) {
   TrackerSet set(radar_ensemble());
   set.show_member("plain");
-  set.show_correction("nfnn", radar_model());
+  set.show_correction("nfnn", radar_model(), {});
   const std::vector<Measurement> log = troubled_log();
   for (const Measurement& measurement : log) set.step(measurement);
   set.reset();

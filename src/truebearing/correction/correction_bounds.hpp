@@ -10,9 +10,9 @@
 namespace truebearing {
 
 struct CorrectionBounds {
-  double kappa = 3.0;                     ///< > 0, limit_kappa's; infinity: not limited
-  bool gate = true;                       ///< whether the model's box closes the gate, where it has one
-  std::optional<RefereeOptions> referee;  ///< absent: none
+  double kappa = 3.0;                          ///< > 0, limit_kappa's; infinity: not limited
+  bool gate = true;                            ///< whether the model's box closes the gate, where it has one
+  std::optional<RefereeOptions> referee = {};  ///< absent: none
 
   bool operator==(const CorrectionBounds&) const = default;
 

@@ -58,13 +58,13 @@ CorrectionModel model(int rules) {
   };
   CorrectionModel model;
   model.space = &line_space();
-  model.base = "plain";
-  model.reference = "tuned";
-  model.covariance_of = "wide";
-  model.features = {{FeatureKind::log_step, "", "", 0.0, 0.0, 1.0},
-                    {FeatureKind::companion_difference, "position_m", "wide", 0.0, 0.0, 1000.0},
-                    {FeatureKind::companion_difference, "velocity_mps", "wide", 0.0, 0.0, 100.0},
-                    {FeatureKind::log_mean_nis, "", "", 0.0, 0.05, 1.0}};
+  model.design.base = "plain";
+  model.design.reference = "tuned";
+  model.design.covariance_of = "wide";
+  model.design.features = {{FeatureKind::log_step, "", "", 0.0, 0.0, 1.0},
+                           {FeatureKind::companion_difference, "position_m", "wide", 0.0, 0.0, 1000.0},
+                           {FeatureKind::companion_difference, "velocity_mps", "wide", 0.0, 0.0, 100.0},
+                           {FeatureKind::log_mean_nis, "", "", 0.0, 0.05, 1.0}};
   model.network = FuzzyNetwork({.input_mean = Eigen::VectorXd::Zero(kFeatures),
                                 .input_scale = Eigen::VectorXd::Ones(kFeatures),
                                 .centres = spread(rules, kFeatures, 2.0),
@@ -72,7 +72,6 @@ CorrectionModel model(int rules) {
                                 .consequents = spread(rules, 2, 1.0),
                                 .output_scale = Eigen::Vector2d(1000.0, 50.0)});
   model.gate = BoxGate{Eigen::VectorXd::Constant(kFeatures, -10.0), Eigen::VectorXd::Constant(kFeatures, 10.0)};
-  model.kappa = 3.0;
   model.inflation = Eigen::VectorXd::Constant(rules, 1.2);
   model.usage = Eigen::VectorXd::Constant(rules, 1.0 / rules);
   model.local_mean = Eigen::MatrixXd::Zero(rules, 2);

@@ -165,16 +165,17 @@ Ensemble ensemble() {
 CorrectionModel model(int rules) {
   CorrectionModel model;
   model.space = &plane_space();
-  model.base = model.covariance_of = "plain";
-  model.reference = "tuned";
-  model.frame = Frame::track;
+  model.design.base = model.design.covariance_of = "plain";
+  model.design.reference = "tuned";
+  model.design.covariance_moments = true;
+  model.design.frame = Frame::track;
   for (const double alpha : {0.0, 0.5, 0.2, 0.08})
     for (const char* component : {"along_m", "cross_m"})
-      model.features.push_back({.kind = alpha > 0.0 ? FeatureKind::innovation_average : FeatureKind::innovation,
-                                .component = component,
-                                .companion = {},
-                                .alpha = alpha});
-  const auto d = static_cast<Eigen::Index>(model.features.size());
+      model.design.features.push_back({.kind = alpha > 0.0 ? FeatureKind::innovation_average : FeatureKind::innovation,
+                                       .component = component,
+                                       .companion = {},
+                                       .alpha = alpha});
+  const auto d = static_cast<Eigen::Index>(model.design.features.size());
   const auto spread = [](Eigen::Index rows, Eigen::Index cols, double size) {
     Eigen::MatrixXd values(rows, cols);
     for (Eigen::Index i = 0; i < values.size(); ++i) values(i) = size * std::sin(12.9898 * static_cast<double>(i + 1));
@@ -187,8 +188,6 @@ CorrectionModel model(int rules) {
                                 .consequents = spread(rules, 4, 1.0),
                                 .output_scale = Eigen::Vector4d(80.0, 80.0, 40.0, 40.0)});
   model.gate = BoxGate{Eigen::VectorXd::Constant(d, -20.0), Eigen::VectorXd::Constant(d, 20.0)};
-  model.referee = RefereeOptions{};
-  model.kappa = 3.0;
   model.moments = Eigen::MatrixXd::Zero(rules, 16);
   for (Eigen::Index j = 0; j < rules; ++j) model.moments.row(j) = Eigen::Matrix4d::Identity().reshaped().transpose();
   model.usage = Eigen::VectorXd::Constant(rules, 1.0 / rules);
@@ -229,7 +228,8 @@ void tracker_ensemble(benchmark::State& state) {
   step_all(state, members);
 }
 void tracker_corrected(benchmark::State& state) {
-  CorrectedTracker tracker(ensemble(), std::make_shared<const CorrectionModel>(model(static_cast<int>(state.range()))));
+  CorrectedTracker tracker(ensemble(), std::make_shared<const CorrectionModel>(model(static_cast<int>(state.range()))),
+                           {.referee = RefereeOptions{}});
   step_all(state, tracker);
 }
 BENCHMARK(tracker_cv);

@@ -10,7 +10,7 @@
 
 #include "truebearing/core/error.hpp"
 #include "truebearing/core/suggestion.hpp"
-#include "truebearing/correction/feature_extractor.hpp"
+#include "truebearing/correction/correction_inputs.hpp"
 #include "truebearing/evaluation/scorer.hpp"
 #include "truebearing/evaluation/target_record.hpp"
 
@@ -37,30 +37,21 @@ class RowMaker {
       : ensemble_(ensemble.fresh()),
         from_step_(correction.training.from_step),
         every_s_(correction.training.every_s),
-        base_(ensemble_.index(correction.base)),
-        reference_(ensemble_.index(correction.reference)),
-        source_(ensemble_.index(correction.covariance_of)),
-        output_in_sigma_(correction.output_in_sigma),
         truth_index_(std::move(truth_index)),
-        scorer_(truth_space, ensemble_.tracker(base_).space()),
-        prototype_(correction.features, ensemble_.tracker(base_).space(), correction.frame,
-                   [&](const std::string& name) {
-                     return ensemble_.tracker(name.empty() ? base_ : ensemble_.index(name)).blocks();
-                   }) {
+        inputs_(correction.design, ensemble_.tracker(ensemble_.index(correction.design.base)).space(), ensemble_),
+        scorer_(truth_space, ensemble_.tracker(inputs_.base()).space()) {
     for (const auto& [name, threshold] : correction.training.leave_out_beyond)
       limits_.emplace_back(quantity(name), threshold);
-    for (const std::string& name : prototype_.companions()) companions_.push_back(ensemble_.index(name));
-    companion_records_.resize(companions_.size());
   }
 
   Rows rows(const Recording& recording) {
     Rows rows;
     ensemble_.reset();
-    tracks_.assign(recording.truth.size(), {prototype_});
+    tracks_.assign(recording.truth.size(), {inputs_.extractor()});
     for (std::size_t step = 0; step < recording.measurements.size(); ++step) {
       ensemble_.step(recording.measurements[step]);
       for (std::size_t target = 0; target < tracks_.size(); ++target)
-        if (const StepRecord* base = target_record(recording, target, ensemble_.records(base_)))
+        if (const StepRecord* base = target_record(recording, target, ensemble_.records(inputs_.base())))
           take(*base, recording.truth[target].x[step], static_cast<int>(step) + 1 >= from_step_, tracks_[target], rows);
     }
     return rows;
@@ -85,31 +76,23 @@ class RowMaker {
   }
 
   void take(const StepRecord& base, const BoundedVector& true_state, bool is_taught, Track& track, Rows& rows) {
-    for (std::size_t c = 0; c < companions_.size(); ++c)
-      companion_records_[c] = ensemble_.record(companions_[c], base.track);
-    FeatureExtractor::Features features;
-    track.extractor.extract(base, companion_records_, features);  // every step, for the averages
-    const StepRecord* reference = ensemble_.record(reference_, base.track);
-    const StepRecord* source = ensemble_.record(source_, base.track);
-    if (!is_taught || base.time_s < track.next_s || !reference || !source || base.status == StepStatus::failed) return;
+    CorrectionInputs::Features features;
+    inputs_.extract(ensemble_, base, track.extractor, features);  // every step, for the averages
+    const CorrectionInputs::Records step = inputs_.records(ensemble_, base.track);
+    if (!is_taught || base.time_s < track.next_s || !step.complete()) return;
     // The first step in every interval, so that steps of another period do not drift through it.
     if (every_s_ > 0.0) track.next_s = every_s_ * (std::floor(base.time_s / every_s_) + 1.0);
-    // T into the frame, then 1 / D.
-    const FrameRotation& rotation = track.extractor.rotation();
-    BoundedVector scale = BoundedVector::Ones(base.x.size());
-    if (output_in_sigma_) scale = rotation.covariance(base.P).diagonal().cwiseSqrt().cwiseInverse();
+    const OutputUnits units = inputs_.units(track.extractor, base);
     const BoundedVector truth = true_state(truth_index_);
-    const BoundedVector label = scale.cwiseProduct(rotation.vector(truth - base.x));
-    const auto scaled = [&](const BoundedMatrix& P) -> BoundedMatrix {
-      return scale.asDiagonal() * rotation.covariance(P) * scale.asDiagonal();
-    };
-    const Eigen::LLT<BoundedMatrix> covariance(scaled(source->P)), reference_covariance(scaled(reference->P));
+    const BoundedVector label = units.output(truth - base.x);
+    const Eigen::LLT<BoundedMatrix> covariance(units.output_covariance(step.source->P)),
+        reference_covariance(units.output_covariance(step.reference->P));
     if (!features.allFinite() || !label.allFinite() || covariance.info() != Eigen::Success ||
         reference_covariance.info() != Eigen::Success || is_beyond(true_state, base))
       return;
     append(features, rows);
     append(label, rows);
-    append(BoundedVector(scale.cwiseProduct(rotation.vector(reference->x - base.x))), rows);
+    append(units.output(step.reference->x - base.x), rows);
     append(BoundedMatrix(covariance.matrixL()), rows);
     append(BoundedMatrix(reference_covariance.matrixL()), rows);
   }
@@ -117,17 +100,11 @@ class RowMaker {
   Ensemble ensemble_;
   int from_step_;
   double every_s_;
-  int base_;
-  int reference_;
-  int source_;
-  bool output_in_sigma_;
-  std::vector<int> truth_index_;                        // of each component of the base's state
+  std::vector<int> truth_index_;  // of each component of the base's state
+  CorrectionInputs inputs_;
   Scorer scorer_;                                       // of the base
   std::vector<std::pair<std::size_t, double>> limits_;  // of its errors, by quantity
-  FeatureExtractor prototype_;
-  std::vector<Track> tracks_;  // [target]
-  std::vector<int> companions_;
-  std::vector<const StepRecord*> companion_records_;
+  std::vector<Track> tracks_;                           // [target]
 };
 
 }  // namespace
@@ -145,7 +122,7 @@ Eigen::VectorXd mahalanobis_lengths(const Eigen::MatrixXd& errors, const Eigen::
 
 TeacherSet collect_teacher_set(const Ensemble& ensemble, const CorrectionSpec& correction, const Scenario& scenario,
                                const TeacherOptions& options) {
-  const StateSpace& space = ensemble.tracker(ensemble.index(correction.base)).space();
+  const StateSpace& space = ensemble.tracker(ensemble.index(correction.design.base)).space();
   std::vector<int> truth_index;
   for (const std::string& component : space.components) {
     truth_index.push_back(scenario.truth_space().component_index(component));
@@ -165,14 +142,14 @@ TeacherSet collect_teacher_set(const Ensemble& ensemble, const CorrectionSpec& c
       },
       options.progress);
 
-  const Eigen::Index d = static_cast<Eigen::Index>(correction.features.size());
+  const Eigen::Index d = static_cast<Eigen::Index>(correction.design.features.size());
   const Eigen::Index n = space.size();
   Eigen::Index total = 0;
   for (const Rows& rows : by_run) total += static_cast<Eigen::Index>(rows.size()) / row_size(d, n);
   if (total == 0)
     throw InputError("training", "no step of the training runs can be taught", "records, truth and finite features");
-  TeacherSet set{correction.features,       Eigen::MatrixXd(total, d),     Eigen::MatrixXd(total, n),
-                 Eigen::MatrixXd(total, n), Eigen::MatrixXd(total, n * n), Eigen::MatrixXd(total, n * n)};
+  TeacherSet set{correction.design.features, Eigen::MatrixXd(total, d),     Eigen::MatrixXd(total, n),
+                 Eigen::MatrixXd(total, n),  Eigen::MatrixXd(total, n * n), Eigen::MatrixXd(total, n * n)};
   Eigen::Index next = 0;
   for (const Rows& rows : by_run) {
     const Eigen::Index count = static_cast<Eigen::Index>(rows.size()) / row_size(d, n);

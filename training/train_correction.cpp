@@ -18,8 +18,9 @@ namespace {
 FuzzyTrainingData training_data(const TeacherSet& teacher, const CorrectionSpec& spec, const StateSpace& space) {
   FuzzyTrainingData data{teacher.X, teacher.Y, {}, {}, {}, false};
   if (spec.training.mirror == TrainingSpec::Mirror::none) return data;
-  for (const FeatureSpec& feature : teacher.features) data.parity.push_back(mirror_parity(feature, spec.frame, space));
-  for (int i = 0; i < space.size(); ++i) data.output_parity.push_back(component_parity(spec.frame, i));
+  for (const FeatureSpec& feature : teacher.features)
+    data.parity.push_back(mirror_parity(feature, spec.design.frame, space));
+  for (int i = 0; i < space.size(); ++i) data.output_parity.push_back(component_parity(spec.design.frame, i));
   data.paired_rules = spec.training.mirror == TrainingSpec::Mirror::pairs;
   return data;
 }
@@ -63,7 +64,7 @@ Eigen::MatrixXd outputs(const TeacherSet& teacher, const FuzzyNetwork& network) 
 
 // The box of the training data; symmetric in the features that a mirrored target mirrors, where mirror images were
 // taught. The disagreement has no low side, and no limit where `disagreements` is empty.
-BoxGate box_gate(const FuzzyTrainingData& data, const Eigen::VectorXd& disagreements, const GateSpec& spec) {
+BoxGate box_gate(const FuzzyTrainingData& data, const Eigen::VectorXd& disagreements, const BoxSpec& spec) {
   const Eigen::Index d = data.features.cols();
   BoxGate gate;
   gate.low.resize(d);
@@ -106,7 +107,7 @@ void fit_covariance(const TeacherSet& teacher, const Eigen::MatrixXd& correction
                     CorrectionModel& model) {
   const Eigen::Index n = teacher.Y.cols();
   const Eigen::MatrixXd errors = teacher.Y - corrections;
-  if (!spec.covariance_moments) {
+  if (!spec.design.covariance_moments) {
     const Eigen::VectorXd lengths = mahalanobis_lengths(errors, teacher.covariance_factors);
     model.inflation = covariance_inflation(model.network, teacher.X, lengths.cwiseAbs2() / static_cast<double>(n));
     return;
@@ -118,15 +119,15 @@ void fit_covariance(const TeacherSet& teacher, const Eigen::MatrixXd& correction
         teacher.covariance_factors.row(row).reshaped(n, n).rowwise().norm().transpose().array();
   std::vector<int> output_parity;
   if (spec.training.mirror == TrainingSpec::Mirror::pairs)
-    for (int i = 0; i < static_cast<int>(n); ++i) output_parity.push_back(component_parity(spec.frame, i));
+    for (int i = 0; i < static_cast<int>(n); ++i) output_parity.push_back(component_parity(spec.design.frame, i));
   model.moments = covariance_moments(model.network, teacher.X, normalised, output_parity);
 }
 
 CorrectionModel train_correction(const Study& study, const std::string& name, const TrainOptions& options,
                                  TrainReport* report) {
   const CorrectionSpec& spec = study.tracker(name).correction.value();
-  const Ensemble ensemble = study.make_ensemble(spec.members());
-  const StateSpace& space = ensemble.tracker(ensemble.index(spec.base)).space();
+  const Ensemble ensemble = study.make_ensemble(spec.design.members());
+  const StateSpace& space = ensemble.tracker(ensemble.index(spec.design.base)).space();
   const TeacherOptions teacher_options{options.seed, Role::training, options.threads, options.teacher_progress};
   const std::unique_ptr<Scenario> taught = spec.training.scenario ? load_scenario(*spec.training.scenario) : nullptr;
   const TeacherSet teacher = collect_teacher_set(ensemble, spec, taught ? *taught : study.scenario(), teacher_options);
@@ -137,16 +138,9 @@ CorrectionModel train_correction(const Study& study, const std::string& name, co
 
   CorrectionModel model;
   model.space = &space;
-  model.base = spec.base;
-  model.reference = spec.reference;
-  model.covariance_of = spec.covariance_of;
-  for (const std::string& member : spec.members()) model.trackers[member] = study.configuration_line(member);
-  model.frame = spec.frame;
-  model.output_in_sigma = spec.output_in_sigma;
-  model.features = spec.features;
+  model.design = spec.design;
+  for (const std::string& member : spec.design.members()) model.trackers[member] = study.configuration_line(member);
   model.network = FuzzyNetwork(std::move(trained.parameters));
-  model.kappa = spec.kappa;
-  model.referee = spec.referee;
 
   // Covariance and gate from the wider family, where there is one.
   std::optional<TeacherSet> wider;
@@ -155,18 +149,17 @@ CorrectionModel train_correction(const Study& study, const std::string& name, co
   const TeacherSet& met = wider ? *wider : teacher;
   const Eigen::MatrixXd corrections = outputs(met, model.network);
   fit_covariance(met, corrections, spec, model);
-  if (spec.gate) {
-    const bool trusts_another = spec.reference != spec.base;
-    model.gate = box_gate(training_data(met, spec, space),
-                          trusts_another ? disagreements(met, corrections, model) : Eigen::VectorXd(), *spec.gate);
-  }
+  const bool trusts_another = spec.design.reference != spec.design.base;
+  model.gate = box_gate(training_data(met, spec, space),
+                        trusts_another ? disagreements(met, corrections, model) : Eigen::VectorXd(), spec.box);
   model.usage = trained.usage;
   model.local_mean = trained.local_mean;
   model.provenance = {{"study", study.name()},
                       {"tracker", name},
                       {"seed", fmt::format("{}", options.seed)},
                       {"training_runs", fmt::format("{}", spec.training.runs)},
-                      {"training_rows", fmt::format("{}", teacher.X.rows())}};
+                      {"training_rows", fmt::format("{}", teacher.X.rows())},
+                      {"bounds", describe(spec.bounds)}};
   if (taught) model.provenance["scenario"] = spec.training.scenario->filename().string();
   if (wider) model.provenance["covariance_scenario"] = spec.training.covariance_scenario->filename().string();
   model.validate();

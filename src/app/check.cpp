@@ -10,9 +10,9 @@ namespace {
 
 void describe_correction(const Study& study, const TrackerSpec& spec) {
   const CorrectionSpec& correction = *spec.correction;
-  fmt::print("    corrects {}, trusts {}, covariance of {}, kappa {}\n", correction.base, correction.reference,
-             correction.covariance_of, correction.kappa);
-  for (const FeatureSpec& feature : correction.features) fmt::print("    feature: {}\n", describe(feature));
+  fmt::print("    corrects {}, trusts {}, covariance of {}, kappa {}\n", correction.design.base,
+             correction.design.reference, correction.design.covariance_of, correction.bounds.kappa);
+  for (const FeatureSpec& feature : correction.design.features) fmt::print("    feature: {}\n", describe(feature));
   try {
     study.load_model(spec.name);
     fmt::print("    model: {}\n", correction.model.string());

@@ -5,7 +5,6 @@
 #include "app/output.hpp"
 #include "app/subcommands.hpp"
 #include "app/workflow.hpp"
-#include "truebearing/correction/corrected_tracker.hpp"
 #include "truebearing/evaluation/report.hpp"
 
 namespace truebearing {
@@ -21,13 +20,6 @@ struct Options {
   bool retrain = false;
   bool quiet = false;
 };
-
-std::unique_ptr<Tracker> standalone(const Study& study, const std::string& name, const CorrectionModels& models) {
-  const auto model = models.find(name);
-  if (model == models.end()) return study.make_tracker(name);
-  return std::make_unique<CorrectedTracker>(study.make_ensemble(study.tracker(name).correction->members()),
-                                            model->second);
-}
 
 void run_compare(const Options& options, bool seed_given) {
   Study study = Study::load(options.study);
@@ -61,7 +53,7 @@ void run_compare(const Options& options, bool seed_given) {
   const Recording timed = scenarios.front().scenario->simulate({seed, Role::evaluation, 0});
   for (int i = 0; i < trackers.size(); ++i)
     comparison.ns_per_step.emplace_back(trackers.name(i),
-                                        time_per_step_ns(*standalone(study, trackers.name(i), models), timed));
+                                        time_per_step_ns(*study.make_tracker(trackers.name(i), models), timed));
 
   if (options.json != "-") fmt::print("{}{}", notes, comparison_table(comparison));
   if (!options.json.empty()) write_output(options.json, comparison_json(comparison));

@@ -14,7 +14,7 @@ void add_rules(CLI::App& app) {
   command->add_option("model", *path, "model file (JSON)")->required();
   command->callback([path] {
     const CorrectionModel model = read_model_file(*path);
-    fmt::print("{} corrects {} towards the truth; trusted: {}\n", *path, model.base, model.reference);
+    fmt::print("{} corrects {} towards the truth; trusted: {}\n", *path, model.design.base, model.design.reference);
     for (const auto& [key, value] : model.provenance) fmt::print("  {}: {}\n", key, value);
     fmt::print("\n{}", rule_sentences(model));
   });

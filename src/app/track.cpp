@@ -48,7 +48,7 @@ std::vector<RecordedTrack> read_log(const Study& study, const std::string& log) 
   return {{0, std::move(recording)}};
 }
 
-// Writes the records of all trackers whose state is the first corrected or plain one's.
+// Writes the records of all trackers whose state is the largest.
 class TrackWriter {
  public:
   explicit TrackWriter(const TrackerSet& trackers) {
@@ -60,17 +60,22 @@ class TrackWriter {
 
   void add(const std::string& name, const StepRecord& record) {
     if (record.space != space_) return;
-    if (!writer_) writer_.emplace(*space_, record.innovation ? static_cast<int>(record.innovation->nu.size()) : 1);
-    writer_->add(name, record);
+    // The first records of a track, and all of a corrected one, have no innovation.
+    if (measurements_ == 0 && record.innovation) measurements_ = static_cast<int>(record.innovation->nu.size());
+    rows_.emplace_back(name, record);
   }
-  void sort_by_time() {
-    if (writer_) writer_->sort_by_time();
+
+  std::string text(bool sorted_by_time) const {
+    StepLogWriter writer(*space_, std::max(measurements_, 1));
+    for (const auto& [name, record] : rows_) writer.add(name, record);
+    if (sorted_by_time) writer.sort_by_time();
+    return writer.str();
   }
-  std::string str() const { return writer_ ? writer_->str() : StepLogWriter(*space_, 1).str(); }
 
  private:
   const StateSpace* space_;
-  std::optional<StepLogWriter> writer_;
+  int measurements_ = 0;  // in an innovation
+  std::vector<std::pair<std::string, StepRecord>> rows_;
 };
 
 void print_consistency(const TrackerSet& trackers, const std::vector<InnovationConsistency>& consistency,
@@ -170,8 +175,7 @@ void track(const Options& options) {
       for (int i = 0; i < trackers.size(); ++i)
         for (StepRecord record : trackers.records(i)) {
           record.track += number;  // those of a step log are numbered 0 while they run
-          if (!record.correction)
-            consistency[static_cast<std::size_t>(i)].add(record);  // a correction has no innovations
+          consistency[static_cast<std::size_t>(i)].add(record);
           writer.add(trackers.name(i), record);
         }
     }
@@ -183,7 +187,6 @@ void track(const Options& options) {
     rows.missing += recording.counts.missing;
     rows.repeated += recording.counts.repeated;
   }
-  if (tracks.size() > 1) writer.sort_by_time();
   const bool to_stdout = options.output == "-" || options.json == "-" || options.events == "-";
   if (!to_stdout) {
     fmt::print("{}: {} measurements, {} missing, {} repeated rows dropped\n\n", options.log, measurements, rows.missing,
@@ -203,7 +206,7 @@ void track(const Options& options) {
   } else if (!options.json.empty()) {
     throw InputError(options.log, "has no truth to score against", "a log with truth, or no --json");
   }
-  if (!options.output.empty()) write_output(options.output, writer.str());
+  if (!options.output.empty()) write_output(options.output, writer.text(tracks.size() > 1));
   if (!options.events.empty()) write_output(options.events, events.csv());
 }
 

@@ -16,10 +16,10 @@ constexpr std::size_t kValidationRuns = 200;
 std::string validation_scores(const Study& study, const std::string& name, const CorrectionModels& models,
                               const WorkflowOptions& options) {
   const CorrectionSpec& spec = study.tracker(name).correction.value();
-  TrackerSet trackers(study.make_ensemble(spec.members()));
-  trackers.show_member(spec.base);
-  if (spec.reference != spec.base) trackers.show_member(spec.reference);
-  trackers.show_correction(name, models.at(name));
+  TrackerSet trackers(study.make_ensemble(spec.design.members()));
+  trackers.show_member(spec.design.base);
+  if (spec.design.reference != spec.design.base) trackers.show_member(spec.design.reference);
+  trackers.show_correction(name, models.at(name), spec.bounds);
   ComparisonOptions comparison_options;
   comparison_options.seed = options.seed;
   comparison_options.role = Role::validation;

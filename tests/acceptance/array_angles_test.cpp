@@ -81,7 +81,7 @@ TEST(ArrayAngles, CorrectionsOfAngleAndRateReachTheirBars) {
     TrackerSet trackers(study.make_ensemble({"joint", "lag_fixed"}));
     for (const char* base : {"joint", "lag_fixed"}) trackers.show_member(base);
     for (const char* tracker : {"joint_nfnn", "lag_fixed_nfnn"})
-      trackers.show_correction(tracker, study.load_model(tracker));
+      trackers.show_correction(tracker, study.load_model(tracker), study.tracker(tracker).correction->bounds);
     ComparisonOptions options = study.comparison_options();
     options.runs = runs;
     options.seed = 20;

@@ -59,7 +59,7 @@ TEST(BearingsOnly, CorrectionWithALogPolarCompanionReachesItsBars) {
   TrackerSet trackers(study.make_ensemble({"ekf", "log_polar", "bank_6"}));
   trackers.show_member("ekf");
   trackers.show_member("bank_6");
-  trackers.show_correction("nfnn", study.load_model("nfnn"));
+  trackers.show_correction("nfnn", study.load_model("nfnn"), study.tracker("nfnn").correction->bounds);
   ComparisonOptions options = study.comparison_options();
   options.runs = 600;
   options.seed = 20;

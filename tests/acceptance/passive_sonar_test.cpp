@@ -73,7 +73,8 @@ TEST(PassiveSonar, CorrectionsOfTheTurnReachTheirBars) {
   const Study study = load_study("passive_sonar_turns");
   TrackerSet trackers(study.make_ensemble({"imm2", "ct9"}));
   for (const char* base : {"imm2", "ct9"}) trackers.show_member(base);
-  for (const char* name : {"imm2_nfnn", "ct9_nfnn"}) trackers.show_correction(name, study.load_model(name));
+  for (const char* name : {"imm2_nfnn", "ct9_nfnn"})
+    trackers.show_correction(name, study.load_model(name), study.tracker(name).correction->bounds);
   ComparisonOptions options = study.comparison_options();
   options.runs = 700;
   options.seed = 20;

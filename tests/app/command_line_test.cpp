@@ -178,6 +178,23 @@ TEST(Program, TracksWhatItSimulated) {
   EXPECT_TRUE(json::parse(scores.out).contains("trackers"));
 }
 
+// A track in the plane begins before its filter has an innovation, which the columns must hold all the same.
+TEST(Program, TrackWritesInnovationsWhole) {
+  const TemporaryFolder folder;
+  const std::string data = std::string(TRUEBEARING_SOURCE_DIR) + "/data/";
+  ASSERT_EQ(run(folder, "simulate " + data + "scenarios/manoeuvre_2d.toml -o logs").status, 0);
+  const Outcome tracked = run(folder, "track " + data + "studies/manoeuvre_2d.toml logs/run_0000.csv -o steps.csv");
+  ASSERT_EQ(tracked.status, 0) << tracked.err;
+  const std::vector<StepRecord> plain = read_step_log(folder.path() / "steps.csv", "plain").records;
+  ASSERT_FALSE(plain.empty());
+  EXPECT_FALSE(plain.front().innovation);
+  ASSERT_TRUE(plain.back().innovation);
+  EXPECT_EQ(plain.back().innovation->nu.size(), 2);
+  const std::vector<StepRecord> corrected = read_step_log(folder.path() / "steps.csv", "nfnn").records;
+  EXPECT_EQ(corrected.size(), plain.size());
+  for (const StepRecord& record : corrected) EXPECT_FALSE(record.innovation) << "which a correction has none of";
+}
+
 TEST(Program, SimulatesBearingsOfARecordedTrack) {
   const TemporaryFolder folder;
   std::string positions = "time_s,vessel,latitude_deg,longitude_deg\n";

@@ -61,7 +61,6 @@ std::shared_ptr<const CorrectionModel> radar_model() {
   RandomStream random({}, StreamId::test);
   CorrectionModel model = testing::line_model(testing::radar_features(), testing::random_parameters(random, 4, 16, 2),
                                               "plain", "tuned", "wide");
-  model.kappa = 3.0;
   model.gate = testing::box(4, -3.0, 6.0);
   return testing::shared(model);
 }
@@ -140,7 +139,7 @@ TEST(Allocation, OfATrackerThatAllocatesIsCaught) {
 TEST(TrackerSet, StepsAllocateNothing) {
   TrackerSet set(radar_ensemble());
   set.show_member("plain");
-  set.show_correction("nfnn", radar_model());
+  set.show_correction("nfnn", radar_model(), {});
   const std::vector<Measurement> log = troubled_log();
   for (const Measurement& measurement : log) set.step(measurement);
   set.reset();

@@ -103,7 +103,6 @@ CorrectionModel radar_model(std::uint64_t run) {
   parameters.input_mean = Eigen::Vector4d(4.0, 0.0, 0.0, 0.0);
   parameters.output_scale = Eigen::Vector2d(2000.0, 100.0);
   CorrectionModel model = line_model(radar_features(), parameters, "plain", "tuned", "wide");
-  model.kappa = 3.0;
   model.inflation = Eigen::VectorXd::NullaryExpr(16, [&] { return random.uniform(0.5, 2.0); });
   model.gate = box(4, -3.0, 6.0);
   return model;
@@ -117,9 +116,8 @@ TEST(Correction, IsTheReferencePlusTheLimitedDifference) {
   s.source->record.P = BoundedVector(Eigen::Vector2d(2.0, 0.5)).asDiagonal();
   CorrectionModel model = line_model(kResidual, constant(1, {5.0, -2.0}), "base", "reference", "source");
   model.inflation[0] = 1.5;
-  Correction free(shared(model), s.ensemble);
-  model.kappa = 1.0;
-  Correction limited(shared(model), s.ensemble);
+  Correction free(shared(model), s.ensemble, {.kappa = kInfinity});
+  Correction limited(shared(model), s.ensemble, {.kappa = 1.0});
   s.ensemble.step(position(1.0, 0.0));
 
   const StepRecord open = free.correct(s.ensemble)[0];
@@ -163,6 +161,29 @@ TEST(Correction, HandOverCovarianceIsThatOfTheMixture) {
   }
 }
 
+// What bounds a correction is said beside the model, and may change without it.
+TEST(Correction, GateThatIsNotUsedLeavesTheBoxAside) {
+  Scene s = scene();
+  s.base->record.innovation->z[0] = 20.0;
+  CorrectionModel model = line_model(kResidual, constant(1, {1.0, -2.0}), "base", "reference", "source");
+  model.gate = box(1, -1.0, 1.0);
+  Correction gated(shared(model), s.ensemble), free(shared(model), s.ensemble, {.gate = false});
+  s.ensemble.step(position(1.0, 0.0));
+  EXPECT_EQ(gated.correct(s.ensemble)[0].correction->gate, 0.0);
+  EXPECT_EQ(free.correct(s.ensemble)[0].correction->gate, 1.0);
+  EXPECT_EQ(free.correct(s.ensemble)[0].x, Eigen::Vector2d(1.0, -2.0));
+}
+
+TEST(Correction, IsWithinThreeStandardDeviationsWhereNothingElseIsSaid) {
+  Scene s = scene();
+  Correction correction(shared(line_model(kResidual, constant(1, {50.0, 0.0}), "base", "reference", "source")),
+                        s.ensemble);
+  s.ensemble.step(position(1.0, 0.0));
+  const StepRecord record = correction.correct(s.ensemble)[0];
+  EXPECT_TRUE(record.correction->limited);
+  EXPECT_NEAR(record.x[0], 3.0, 1e-12);
+}
+
 TEST(Correction, OutsideTheBoxTheReferenceStands) {
   Scene s = scene();
   s.reference->record.x = Eigen::Vector2d(103.0, 9.0);
@@ -188,7 +209,6 @@ TEST(Correction, NetworkThatContradictsTheReferenceMoreThanItEverDidHandsOver) {
   for (const double disagreement : {1.0, 2.0, 2.1, 2.5, 30.0, 1e200, 5e307}) {
     CorrectionModel model =
         line_model(kResidual, constant(1, {std::sqrt(5.0) * disagreement, 0.0}), "base", "reference", "source");
-    model.kappa = 3.0;
     model.gate = box(1, -1.0, 1.0, 2.0);
     Correction correction(shared(model), s.ensemble);
     s.ensemble.step(position(1.0, 0.0));
@@ -204,7 +224,7 @@ TEST(Correction, WithoutBaseOrCovarianceSourceTheReferenceStands) {
   Scene s = scene();
   s.reference->record.x = Eigen::Vector2d(103.0, 9.0);
   Correction correction(shared(line_model(kResidual, constant(1, {5.0, -2.0}), "base", "reference", "source")),
-                        s.ensemble);
+                        s.ensemble, {.kappa = kInfinity});
   const auto corrected = [&] {
     s.ensemble.step(position(1.0, 0.0));
     return correction.correct(s.ensemble);
@@ -266,10 +286,10 @@ TEST(Correction, PublishedEstimateIsFiniteAndWithinKappaOfTheReference) {
     }
     if (wild) spoil(model.inflation, positive);
     const bool bounded = model_number % 10 != 9;
-    model.kappa = bounded ? std::pow(10.0, random.uniform(-2.0, 3.0)) : kInfinity;
+    const double kappa = bounded ? std::pow(10.0, random.uniform(-2.0, 3.0)) : kInfinity;
     if (random.uniform() < 0.5)
       model.gate = box(5, -random.uniform(0.1, 5.0), random.uniform(0.1, 5.0), model_number % 2 == 0 ? kInfinity : 3.0);
-    Correction correction(shared(model), s.ensemble);
+    Correction correction(shared(model), s.ensemble, {.kappa = kappa});
     for (int step = 0; step < 110; ++step) {
       for (ScriptedTracker* tracker : {s.base, s.reference, s.source}) {
         const double scale = std::pow(10.0, random.uniform(-3.0, 5.0));
@@ -299,8 +319,8 @@ TEST(Correction, PublishedEstimateIsFiniteAndWithinKappaOfTheReference) {
         const double distance = std::sqrt(mahalanobis_squared(reference.P, BoundedVector(record.x - reference.x)));
         // To 1e-9, and to what rounding to the digits of the reference's own x adds.
         const double rounding = 1e-15 * reference.x.norm() / std::sqrt(reference.P.diagonal().minCoeff() * 1e-3);
-        ASSERT_LE(distance, model.kappa * (1.0 + 1e-9) + rounding) << model_number << " " << step;
-        ASSERT_LE(record.correction->distance_sigmas, model.kappa * (1.0 + 1e-9));
+        ASSERT_LE(distance, kappa * (1.0 + 1e-9) + rounding) << model_number << " " << step;
+        ASSERT_LE(record.correction->distance_sigmas, kappa * (1.0 + 1e-9));
       }
       moved += record.x != reference.x ? 1 : 0;
       limited += record.correction->limited ? 1 : 0;
@@ -315,7 +335,6 @@ TEST(Correction, ZeroNetworkOnTheBaseIsThePlainTrackerToTheBit) {
   std::vector<FeatureSpec> features = kResidual;
   features.push_back({.kind = FeatureKind::log_step});
   CorrectionModel model = line_model(features, parameters);
-  model.kappa = 3.0;
   model.gate = box(2, -2000.0, 3.0);
   Ensemble ensemble;
   RadarFilter radar;
@@ -337,7 +356,6 @@ TEST(Correction, ZeroNetworkOnTheBaseIsThePlainTrackerToTheBit) {
       EXPECT_EQ(records[0].status, expected[0].status);
       EXPECT_EQ(records[0].track, expected[0].track);
       EXPECT_EQ(records[0].time_s, expected[0].time_s);
-      EXPECT_EQ(records[0].innovation.has_value(), expected[0].innovation.has_value());
       const double g = records[0].correction->gate;
       partly += g > 0.0 && g < 1.0 ? 1 : 0;
     }
@@ -396,8 +414,27 @@ TEST(Correction, BaseInTheRecordStaysWhatItWas) {
     const StepRecord record = tracker.step(measurement)[0];
     ASSERT_EQ(record.correction->base_x, expected.x) << "open loop: nothing is written back";
     ASSERT_EQ(record.correction->base_P, expected.P);
-    ASSERT_EQ(record.innovation->nu, expected.innovation->nu);
   }
+}
+
+// What the base predicted, innovated and gained is not the correction's: a NIS of it would say nothing of what is
+// published.
+TEST(Correction, RecordTellsNothingThatIsNotItsOwn) {
+  CorrectedTracker tracker(radar_ensemble(), shared(radar_model(4)));
+  const RecordBlocks blocks = tracker.blocks();
+  EXPECT_FALSE(blocks.prediction || blocks.innovation || blocks.gain || blocks.measures_position);
+  for (const Measurement& measurement : radar_log(4, 20)) {
+    const StepRecord record = tracker.step(measurement)[0];
+    ASSERT_FALSE(record.prediction || record.innovation || record.gain || record.mode_probabilities);
+    ASSERT_TRUE(record.correction.has_value());
+  }
+  Scene s = scene();
+  s.base->shown = false;
+  CorrectedTracker bare(std::move(s.ensemble),
+                        shared(line_model(kResidual, constant(1, {5.0, -2.0}), "base", "reference", "source")));
+  const StepRecord record = bare.step(position(1.0, 0.0))[0];
+  EXPECT_FALSE(record.innovation) << "nor of the reference, where that stands";
+  EXPECT_EQ(record.correction->base_x.size(), 0) << "and there was no base";
 }
 
 TEST(Correction, ResetAndCloneBeginAnew) {
@@ -428,9 +465,9 @@ TEST(Correction, BlockThatTheRecordsLackIsRefusedWhenItIsBuilt) {
   ensemble.add("plain", std::make_unique<ScriptedTracker>(RecordBlocks{}));
   CorrectionModel model = line_model(kResidual, constant(1, {0.0, 0.0}));
   EXPECT_THAT(error_message([&] { Correction(shared(model), ensemble); }), HasSubstr("innovation"));
-  model.features = {{.kind = FeatureKind::gain, .component = "position_m"}};
+  model.design.features = {{.kind = FeatureKind::gain, .component = "position_m"}};
   EXPECT_THAT(error_message([&] { Correction(shared(model), ensemble); }), HasSubstr("gain"));
-  model.features = {{.kind = FeatureKind::prediction_difference, .component = "position_m"}};
+  model.design.features = {{.kind = FeatureKind::prediction_difference, .component = "position_m"}};
   EXPECT_THAT(error_message([&] { Correction(shared(model), ensemble); }), HasSubstr("prediction"));
 }
 
@@ -440,14 +477,12 @@ TEST(Correction, ModelWhosePartsDisagreeIsRefused) {
   const CorrectionModel good = line_model(kResidual, constant(1, {0.0, 0.0}));
   EXPECT_EQ(error_message([&] { Correction(shared(good), ensemble); }), "no error");
   CorrectionModel bad = good;
-  bad.features.push_back({.kind = FeatureKind::log_step});
+  bad.design.features.push_back({.kind = FeatureKind::log_step});
   EXPECT_THAT(error_message([&] { Correction(shared(bad), ensemble); }), HasSubstr("features"));
   bad = good;
   bad.inflation[0] = 0.0;
   EXPECT_THAT(error_message([&] { Correction(shared(bad), ensemble); }), HasSubstr("inflation"));
-  bad = good;
-  bad.kappa = 0.0;
-  EXPECT_THAT(error_message([&] { Correction(shared(bad), ensemble); }), HasSubstr("kappa"));
+  EXPECT_THAT(error_message([&] { Correction(shared(good), ensemble, {.kappa = 0.0}); }), HasSubstr("kappa"));
   bad = good;
   bad.gate = box(2, -1.0, 1.0);
   EXPECT_THAT(error_message([&] { Correction(shared(bad), ensemble); }), HasSubstr("gate"));

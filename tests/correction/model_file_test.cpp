@@ -24,8 +24,7 @@ CorrectionModel model_to_save() {
   RandomStream random({.seed = 4}, StreamId::test);
   CorrectionModel model =
       testing::line_model(testing::radar_features(), testing::random_parameters(random, 4, 5, 2), "plain", "tuned", "wide");
-  model.features.back() = {.kind = FeatureKind::innovation_average, .companion = "wide", .alpha = 1.0 / 3.0};
-  model.kappa = 3.0;
+  model.design.features.back() = {.kind = FeatureKind::innovation_average, .companion = "wide", .alpha = 1.0 / 3.0};
   model.gate = testing::box(4, -1.0 / 3.0, 1e-300, 2.5);
   model.inflation = Eigen::VectorXd::NullaryExpr(5, [&] { return std::pow(10.0, random.uniform(-300.0, 300.0)); });
   model.usage = Eigen::VectorXd::NullaryExpr(5, [&] { return random.uniform(); });
@@ -52,32 +51,49 @@ TEST(ModelFile, SaveLoadSaveIsByteIdentical) {
   const CorrectionModel original = model_to_save();
   EXPECT_EQ(loaded.network.parameters(), original.network.parameters());
   EXPECT_EQ(loaded.gate, original.gate);
-  EXPECT_EQ(loaded.features, original.features);
+  EXPECT_EQ(loaded.design.features, original.design.features);
   EXPECT_EQ(loaded.trackers, original.trackers);
-  EXPECT_EQ(loaded.kappa, original.kappa);
   EXPECT_EQ(loaded.inflation, original.inflation);
 }
 
 TEST(ModelFile, FeaturesOfANeighbourAreKept) {
   CorrectionModel model = model_to_save();
-  model.features[0] = {.kind = FeatureKind::neighbour_closeness};
-  model.features[1] = {.kind = FeatureKind::neighbour_difference, .component = "velocity_mps", .scale = 0.1};
-  model.features[2] = {.kind = FeatureKind::neighbour_difference, .component = "position_m", .scale_is_sigma = true};
+  model.design.features[0] = {.kind = FeatureKind::neighbour_closeness};
+  model.design.features[1] = {.kind = FeatureKind::neighbour_difference, .component = "velocity_mps", .scale = 0.1};
+  model.design.features[2] = {.kind = FeatureKind::neighbour_difference, .component = "position_m", .scale_is_sigma = true};
   const std::string saved = model_text(model);
   const CorrectionModel loaded = parse_model(saved, "model.json");
-  EXPECT_EQ(loaded.features, model.features);
+  EXPECT_EQ(loaded.design.features, model.design.features);
   EXPECT_EQ(model_text(loaded), saved);
 }
 
-TEST(ModelFile, WithoutGateAndKappaItIsByteIdenticalToo) {
+TEST(ModelFile, WithoutGateItIsByteIdenticalToo) {
   CorrectionModel model = model_to_save();
   model.gate.reset();
-  model.kappa = std::numeric_limits<double>::infinity();
   const std::string saved = model_text(model);
   const CorrectionModel loaded = parse_model(saved, "model.json");
   EXPECT_EQ(model_text(loaded), saved);
   EXPECT_FALSE(loaded.gate);
-  EXPECT_TRUE(std::isinf(loaded.kappa));
+}
+
+// Files of version 1 held the bounds: they are read, and what they were validated with is remembered as text.
+TEST(ModelFile, FirstVersionIsReadAndItsBoundsAreRemembered) {
+  json first = json::parse(model_text(model_to_save()));
+  first["version"] = 1;
+  first["kappa"] = nullptr;
+  CorrectionModel loaded = parse_model(first.dump(), "model.json");
+  EXPECT_EQ(loaded.provenance.at("bounds"), "kappa inf, gate, no referee");
+  first["kappa"] = 4.0;
+  first["gate"] = nullptr;
+  first["referee"] = {{"alpha", 0.03}, {"tolerance", 1.05}, {"edge", 0.025}};
+  EXPECT_EQ(parse_model(first.dump(), "model.json").provenance.at("bounds"),
+            "kappa 4, no gate, referee of alpha 0.03, tolerance 1.05, edge 0.025");
+  loaded.provenance.erase("bounds");
+  EXPECT_EQ(model_text(loaded), model_text(model_to_save())) << "and nothing else differs";
+  first.erase("kappa");
+  EXPECT_THAT(refusal(first.dump()), AllOf(HasSubstr("kappa"), HasSubstr("missing")));
+  first["version"] = 2;
+  EXPECT_THAT(refusal(first.dump()), HasSubstr("referee")) << "which is the study's now";
 }
 
 TEST(ModelFile, GateThatAllowsAnyDisagreementIsByteIdenticalToo) {
@@ -96,7 +112,7 @@ TEST(ModelFile, TruncatedAnywhereItIsRefused) {
 
 TEST(ModelFile, OtherFormatOrVersionIsRefused) {
   EXPECT_THAT(refusal_of([](json& j) { j["format"] = "onnx"; }), AllOf(HasSubstr("format"), HasSubstr("truebearing-correction")));
-  EXPECT_THAT(refusal_of([](json& j) { j["version"] = 2; }), AllOf(HasSubstr("version"), HasSubstr("is 2")));
+  EXPECT_THAT(refusal_of([](json& j) { j["version"] = 3; }), AllOf(HasSubstr("version"), HasSubstr("is 3")));
   EXPECT_THAT(refusal_of([](json& j) { j["version"] = "1"; }), HasSubstr("version"));
   EXPECT_THAT(refusal_of([](json& j) { j.erase("format"); }), HasSubstr("format: is missing"));
   EXPECT_THAT(refusal("[]"), HasSubstr("no object"));
@@ -155,7 +171,7 @@ TEST(ModelFile, NumberThatIsNoneIsRefusedWhereverItStands) {
     const std::string text = marked.dump();
     const std::size_t place = text.find("\"MARK\"");
     for (const char* bad : {"NaN", "Infinity", "-Infinity", "1e999", "-1e999", "null"}) {
-      const bool is_limit = pointer == "/kappa" || pointer == "/gate/largest_disagreement";
+      const bool is_limit = pointer == "/gate/largest_disagreement";
       if (is_limit && std::string(bad) == "null") continue;  // null stands for none
       EXPECT_NE(refusal(std::string(text).replace(place, 6, bad)), "no error") << pointer << " = " << bad;
     }
@@ -170,7 +186,6 @@ TEST(ModelFile, NumbersOutOfRangeAreRefused) {
   EXPECT_THAT(refusal_of([](json& j) { j["normalisation"]["input_scale"][0] = -1.0; }), HasSubstr("scale"));
   EXPECT_THAT(refusal_of([](json& j) { j["normalisation"]["output_scale"][0] = 0.0; }), HasSubstr("scale"));
   EXPECT_THAT(refusal_of([](json& j) { j["normalisation"]["input_clip"] = 0.0; }), HasSubstr("clip"));
-  EXPECT_THAT(refusal_of([](json& j) { j["kappa"] = -3.0; }), HasSubstr("kappa"));
   EXPECT_THAT(refusal_of([](json& j) { j["gate"]["low"][0] = 1e9; }), HasSubstr("gate"));
   EXPECT_THAT(refusal_of([](json& j) { j["gate"]["edge_fraction"] = 0.0; }), HasSubstr("edge_fraction"));
   EXPECT_THAT(refusal_of([](json& j) { j["gate"]["largest_disagreement"] = 0.0; }), HasSubstr("largest_disagreement"));
@@ -178,7 +193,7 @@ TEST(ModelFile, NumbersOutOfRangeAreRefused) {
 }
 
 TEST(ModelFile, UnknownKeyIsRefusedWithTheNearest) {
-  EXPECT_THAT(refusal_of([](json& j) { j["kapa"] = 1.0; }), AllOf(HasSubstr("kapa"), HasSubstr("did you mean \"kappa\"")));
+  EXPECT_THAT(refusal_of([](json& j) { j["featurs"] = 1.0; }), AllOf(HasSubstr("featurs"), HasSubstr("did you mean \"features\"")));
   EXPECT_THAT(refusal_of([](json& j) { j["rules"][3]["center"] = 1.0; }),
               AllOf(HasSubstr("rules[3].center"), HasSubstr("did you mean \"centre\"")));
   EXPECT_THAT(refusal_of([](json& j) { j["gate"]["hihg"] = 1.0; }), HasSubstr("did you mean \"high\""));
@@ -188,8 +203,8 @@ TEST(ModelFile, UnknownKeyIsRefusedWithTheNearest) {
 
 TEST(ModelFile, KeyThatStandsTwiceIsRefused) {
   std::string text = model_text(model_to_save());
-  text.replace(text.find("\"kappa\""), 7, "\"kappa\": 9.0, \"kappa\"");
-  EXPECT_THAT(refusal(text), AllOf(HasSubstr("kappa"), HasSubstr("twice")));
+  text.replace(text.find("\"base\""), 6, "\"base\": \"a\", \"base\"");
+  EXPECT_THAT(refusal(text), AllOf(HasSubstr("base"), HasSubstr("twice")));
 }
 
 TEST(ModelFile, DepthBombIsRefused) {

@@ -14,8 +14,10 @@ using testing::plane_ensemble;
 using testing::plane_log;
 using testing::plane_model;
 
-CorrectedTracker corrected(CorrectionModel model) {
-  return {plane_ensemble(), testing::shared(std::move(model))};
+const CorrectionBounds kWithReferee{.referee = RefereeOptions{}};
+
+CorrectedTracker corrected(CorrectionModel model, const CorrectionBounds& bounds = kWithReferee) {
+  return {plane_ensemble(), testing::shared(std::move(model)), bounds};
 }
 
 TEST(PlaneCorrection, TurnsWithTheTarget) {
@@ -59,8 +61,7 @@ TEST(PlaneCorrection, RefereeTakesTheWeightFromANetworkThatIsWrong) {
   CorrectionModel model = plane_model(3, 5.0);
   model.gate.reset();
   CorrectedTracker with = corrected(model);
-  model.referee.reset();
-  CorrectedTracker without = corrected(model);
+  CorrectedTracker without = corrected(model, {});
   double gate = 1.0;
   for (const Measurement& measurement : plane_log(4, 300)) {
     const auto a = with.step(measurement), b = without.step(measurement);
@@ -76,10 +77,9 @@ TEST(PlaneCorrection, ModelFileKeepsEverything) {
   const std::string saved = model_text(model);
   const CorrectionModel loaded = parse_model(saved, "model.json");
   EXPECT_EQ(model_text(loaded), saved);
-  EXPECT_EQ(loaded.frame, Frame::track);
-  EXPECT_TRUE(loaded.output_in_sigma);
-  EXPECT_EQ(loaded.features, model.features);
-  EXPECT_EQ(loaded.referee, model.referee);
+  EXPECT_EQ(differences(loaded.design, model.design), "");
+  EXPECT_EQ(loaded.design.frame, Frame::track);
+  EXPECT_TRUE(loaded.design.output_in_sigma);
   EXPECT_EQ(loaded.moments, model.moments);
   EXPECT_EQ(loaded.inflation.size(), 0);
 }
@@ -91,9 +91,8 @@ TEST(PlaneCorrection, MomentsThatAreNoCovarianceAreRefused) {
   model = plane_model(6);
   model.inflation = Eigen::VectorXd::Ones(8);
   EXPECT_THROW(model.validate(), InputError);
-  model = plane_model(6);
-  model.referee->edge = 0.0;
-  EXPECT_THROW(model.validate(), InputError);
+  model.design.covariance_moments = false;
+  EXPECT_THROW(model.validate(), InputError) << "with both heads, whichever the design names";
 }
 
 }  // namespace

@@ -34,8 +34,7 @@ TrackerSet trackers() {
   RandomStream random({}, StreamId::test);
   CorrectionModel model = testing::line_model(testing::radar_features(), testing::random_parameters(random, 4, 6, 2),
                                               "plain", "tuned", "wide");
-  model.kappa = 3.0;
-  set.show_correction("nfnn", testing::shared(model));
+  set.show_correction("nfnn", testing::shared(model), {});
   return set;
 }
 

@@ -79,6 +79,7 @@ TEST(Study, NumbersOutOfRangeAreRefused) {
   EXPECT_THAT(refusal("seed = 5", "seed = -1"), HasSubstr("seed"));
   EXPECT_THAT(refusal("kappa = 3.0", "kappa = 0.0"), HasSubstr("kappa"));
   EXPECT_THAT(refusal("kappa = 3.0", "kappa = nan"), HasSubstr("kappa"));
+  EXPECT_THAT(refusal("kappa = 3.0", "kappa = -inf"), HasSubstr("kappa"));
   EXPECT_THAT(refusal("rules = 4", "rules = 257"), HasSubstr("[1, 256]"));
   EXPECT_THAT(refusal("scale = 100.0", "scale = 0.0"), HasSubstr("scale"));
   EXPECT_THAT(refusal("offset = 0.05", "offset = -1.0"), HasSubstr("offset"));
@@ -167,9 +168,11 @@ TEST(Study, SetsAreWhatItIsComparedOn) {
   const std::vector<NamedScenario> sets = study.evaluation_scenarios();
   ASSERT_EQ(sets.size(), 2u);
   EXPECT_EQ(sets[1].name, "two");
-  folder.write("plane.toml", "kind = \"planar_flight\"\n");
+  const std::string plane = std::string(TRUEBEARING_SOURCE_DIR) + "/data/scenarios/manoeuvre_2d.toml";
   for (const auto& [text, says] :
-       std::vector<std::pair<std::string, std::string>>{{"one = 1", "sets.one"}, {"one = \"nowhere.toml\"", "nowhere.toml"}})
+       std::vector<std::pair<std::string, std::string>>{{"one = 1", "sets.one"},
+                                                        {"one = \"nowhere.toml\"", "nowhere.toml"},
+                                                        {"one = \"" + plane + "\"", "has another truth"}})
     EXPECT_THAT(error_message([&] { Study::load(write_study(folder, kStudy + "\n[sets]\n" + text + "\n")); }), HasSubstr(says));
 }
 
@@ -232,13 +235,42 @@ TEST(Study, ModelThatWasTrainedForSomethingElseIsRefused) {
   EXPECT_THAT(load("offset = 0.05", "offset = 0.06"), says("features"));
   EXPECT_THAT(load("  { kind = \"log_step\" },\n", ""), says("features"));
   EXPECT_THAT(load("reference = \"tuned\"", "reference = \"wide\""), says("reference"));
-  EXPECT_THAT(load("kappa = 3.0", "kappa = 4.0"), says("kappa 3"));
+  EXPECT_THAT(load("kappa = 3.0", "output_in = \"sigma\"\ncovariance = \"moments\""), says("output_in, covariance"));
   EXPECT_THAT(load("variance = [999.0, 999.0]", "variance = [999.0, 998.0]"), says("plain"));
   EXPECT_THAT(load("variance = [1e6, 53333.3]", "variance = [1e6, 53333.4]"), says("wide"));
   folder.write("small.parameters.toml", replaced(testing::kParameters, "53000.0", "53001.0"));
   EXPECT_THAT(load("runs = 20\nseed", "runs = 21\nseed"), says("tuned")) << "tuned afresh since";
   folder.write("small.parameters.toml", testing::kParameters);
   EXPECT_EQ(load("rules = 4", "rules = 5"), "no error") << "how it was trained is no matter of what it fits";
+  for (const char* bounds : {"kappa = 4.0", "", "gate = false", "kappa = 3.0\nreferee = true"})
+    EXPECT_EQ(load("kappa = 3.0", bounds), "no error") << "what bounds it is the study's to say: " << bounds;
+}
+
+TEST(Study, GateWithoutABoxIsRefused) {
+  const TemporaryFolder folder;
+  const auto path = write_study(folder);
+  const Study study = Study::load(path);
+  CorrectionModel model = train_correction(
+      study, "nfnn", {.seed = 1, .threads = 1, .teacher_progress = {}, .training_progress = {}});
+  model.gate.reset();
+  EXPECT_THAT(error_message([&] { study.check_model("nfnn", model, "here"); }),
+              AllOf(HasSubstr("here"), HasSubstr("box"), HasSubstr("gate = false")));
+  const Study free = Study::load(write_study(folder, replaced(kStudy, "kappa = 3.0", "gate = false")));
+  EXPECT_EQ(error_message([&] { free.check_model("nfnn", model, "here"); }), "no error");
+}
+
+TEST(Study, BoundsOfACorrectionAreThreeSigmasAndAGateWhereItSaysNothing) {
+  const TemporaryFolder folder;
+  const auto bounds = [&](const std::string& text) {
+    const Study study = Study::load(write_study(folder, replaced(kStudy, "kappa = 3.0", text)));
+    return study.tracker("nfnn").correction->bounds;
+  };
+  EXPECT_EQ(bounds(""), CorrectionBounds{});
+  EXPECT_EQ(bounds("").kappa, 3.0);
+  EXPECT_TRUE(std::isinf(bounds("kappa = inf").kappa));
+  EXPECT_FALSE(bounds("gate = false").gate);
+  EXPECT_TRUE(bounds("gate = { quantile = 0.01 }").gate);
+  EXPECT_EQ(bounds("referee = { edge = 0.5 }").referee->edge, 0.5);
 }
 
 TEST(Study, DeepNestingAndAbsurdSizesAreRefused) {

@@ -41,11 +41,11 @@ inline CorrectionModel line_model(std::vector<FeatureSpec> features, FuzzyNetwor
                                   const std::string& covariance_of = "plain") {
   CorrectionModel model;
   model.space = &line_space();
-  model.base = base;
-  model.reference = reference;
-  model.covariance_of = covariance_of;
+  model.design.base = base;
+  model.design.reference = reference;
+  model.design.covariance_of = covariance_of;
   for (const std::string& name : {base, reference, covariance_of}) model.trackers[name] = "made by hand";
-  model.features = std::move(features);
+  model.design.features = std::move(features);
   const Eigen::Index rules = parameters.centres.rows();
   model.network = FuzzyNetwork(std::move(parameters));
   model.inflation = Eigen::VectorXd::Ones(rules);

@@ -48,20 +48,19 @@ inline CorrectionModel plane_model(std::uint64_t seed, double size = 1.0) {
   RandomStream random({.seed = seed}, StreamId::test);
   CorrectionModel model;
   model.space = &plane_space();
-  model.base = model.covariance_of = "plain";
-  model.reference = "tuned";
+  model.design.base = model.design.covariance_of = "plain";
+  model.design.reference = "tuned";
+  model.design.covariance_moments = true;
   for (const char* name : {"plain", "tuned", "imm"}) model.trackers[name] = "made by hand";
-  model.frame = Frame::track;
-  model.output_in_sigma = true;
-  model.kappa = 3.0;
-  model.referee = RefereeOptions{};
+  model.design.frame = Frame::track;
+  model.design.output_in_sigma = true;
   for (const char* component : {"along_m", "cross_m"}) {
     FeatureSpec innovation, average;
     innovation.kind = FeatureKind::innovation;
     average.kind = FeatureKind::innovation_average;
     innovation.component = average.component = component;
     average.alpha = 0.2;
-    model.features.insert(model.features.end(), {innovation, average});
+    model.design.features.insert(model.design.features.end(), {innovation, average});
   }
   FeatureSpec difference, mode;
   difference.kind = FeatureKind::companion_difference;
@@ -71,7 +70,7 @@ inline CorrectionModel plane_model(std::uint64_t seed, double size = 1.0) {
   mode.kind = FeatureKind::mode_probability;
   mode.companion = "imm";
   mode.mode = 2;
-  model.features.insert(model.features.end(), {difference, mode});
+  model.design.features.insert(model.design.features.end(), {difference, mode});
   FuzzyNetwork::Parameters parameters = random_parameters(random, 6, 8, 4);
   parameters.consequents *= size;
   model.network = FuzzyNetwork(std::move(parameters));

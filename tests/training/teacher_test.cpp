@@ -29,9 +29,9 @@ Ensemble ensemble() {
 
 CorrectionSpec spec(std::size_t runs) {
   CorrectionSpec made;
-  made.base = made.reference = "plain";
-  made.covariance_of = "wide";
-  made.features = testing::radar_features();
+  made.design.base = made.design.reference = "plain";
+  made.design.covariance_of = "wide";
+  made.design.features = testing::radar_features();
   made.training.runs = runs;
   return made;
 }
@@ -174,8 +174,8 @@ TeacherSet teach(const testing::AnglesOfTracks& told, const Recording& recording
   Ensemble ensemble;
   ensemble.add("told", std::make_unique<testing::ToldTracker>(told));
   CorrectionSpec correction;
-  correction.base = correction.reference = correction.covariance_of = "told";
-  correction.features = {{.kind = FeatureKind::log_step}, {.kind = FeatureKind::log_mean_nis, .offset = 1.0}};
+  correction.design.base = correction.design.reference = correction.design.covariance_of = "told";
+  correction.design.features = {{.kind = FeatureKind::log_step}, {.kind = FeatureKind::log_mean_nis, .offset = 1.0}};
   correction.training.runs = 2;
   correction.training.leave_out_beyond = leave_out_beyond;
   return collect_teacher_set(ensemble, correction, testing::AngleScenario(recording), {});

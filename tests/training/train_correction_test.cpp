@@ -36,17 +36,17 @@ TEST(TrainCorrection, ModelRemembersWhatItWasTrainedFor) {
   TrainReport report;
   const CorrectionModel model = train(study, 5, 0, &report);
   EXPECT_EQ(report.rows, 20 * 40);
-  EXPECT_EQ(model.base, "plain");
-  EXPECT_EQ(model.reference, "tuned");
-  EXPECT_EQ(model.covariance_of, "wide");
-  EXPECT_EQ(model.kappa, 3.0);
   EXPECT_EQ(model.network.rules(), 4);
-  EXPECT_EQ(model.features, study.tracker("nfnn").correction->features);
+  EXPECT_EQ(model.design, study.tracker("nfnn").correction->design);
+  EXPECT_EQ(model.design.base, "plain");
+  EXPECT_EQ(model.design.reference, "tuned");
+  EXPECT_EQ(model.design.covariance_of, "wide");
   EXPECT_EQ(model.trackers.size(), 3u);
   EXPECT_EQ(model.trackers.at("tuned"), study.configuration_line("tuned"));
   EXPECT_EQ(model.provenance.at("study"), "small");
   EXPECT_EQ(model.provenance.at("training_runs"), "20");
   EXPECT_EQ(model.provenance.at("training_rows"), "800");
+  EXPECT_EQ(model.provenance.at("bounds"), "kappa 3, gate, no referee");
   EXPECT_NO_THROW(model.validate());
   study.check_model("nfnn", model, "here");
 }
@@ -61,12 +61,16 @@ TEST(TrainCorrection, MirroredBoxIsSymmetricInWhatAMirrorTurns) {
   EXPECT_NE(model.gate->low[2], -model.gate->high[2]) << "the NIS";
 }
 
-TEST(TrainCorrection, WithoutGateTheModelHasNone) {
+// kappa, gate and referee may change without a new training: nothing in the model but its provenance depends on them.
+TEST(TrainCorrection, BoundsOfTheStudyAreNoPartOfTheTraining) {
   const TemporaryFolder folder;
-  const Study study = Study::load(write_study(folder, replaced(kStudy, "kappa = 3.0", "gate = false")));
-  const CorrectionModel model = train(study, 5, 0);
-  EXPECT_FALSE(model.gate.has_value());
-  EXPECT_TRUE(std::isinf(model.kappa));
+  CorrectionModel bounded = train(Study::load(write_study(folder)), 5, 0);
+  CorrectionModel free =
+      train(Study::load(write_study(folder, replaced(kStudy, "kappa = 3.0", "kappa = inf\ngate = false"))), 5, 0);
+  EXPECT_TRUE(free.gate.has_value());
+  EXPECT_EQ(free.provenance.at("bounds"), "kappa inf, no gate, no referee");
+  free.provenance["bounds"] = bounded.provenance.at("bounds");
+  EXPECT_EQ(model_text(free), model_text(bounded));
 }
 
 TEST(TrainCorrection, CorrectionTakesMostOfThePlainFiltersError) {

@@ -12,8 +12,11 @@ namespace truebearing {
 class CorrectedTracker final : public Tracker {
  public:
   /// The ensemble must have the model's base, reference, companions and covariance source among its members.
-  CorrectedTracker(Ensemble ensemble, std::shared_ptr<const CorrectionModel> model)
-      : ensemble_(std::move(ensemble)), model_(std::move(model)), correction_(model_, ensemble_) {}
+  CorrectedTracker(Ensemble ensemble, std::shared_ptr<const CorrectionModel> model, CorrectionBounds bounds = {})
+      : ensemble_(std::move(ensemble)),
+        model_(std::move(model)),
+        bounds_(std::move(bounds)),
+        correction_(model_, ensemble_, bounds_) {}
 
   std::span<const StepRecord> step(const Measurement& measurement) override {
     ensemble_.step(measurement);
@@ -26,16 +29,15 @@ class CorrectedTracker final : public Tracker {
   }
 
   std::unique_ptr<Tracker> fresh() const override {
-    return std::make_unique<CorrectedTracker>(ensemble_.fresh(), model_);
+    return std::make_unique<CorrectedTracker>(ensemble_.fresh(), model_, bounds_);
   }
   const StateSpace& space() const override { return *model_->space; }
   std::optional<Measured> measures() const override {
-    return ensemble_.tracker(ensemble_.index(model_->base)).measures();
+    return ensemble_.tracker(ensemble_.index(model_->design.base)).measures();
   }
-  RecordBlocks blocks() const override { return ensemble_.tracker(ensemble_.index(model_->base)).blocks(); }
-  TrackerCounts counts() const override { return ensemble_.tracker(ensemble_.index(model_->base)).counts(); }
+  TrackerCounts counts() const override { return ensemble_.tracker(ensemble_.index(model_->design.base)).counts(); }
   std::span<const TrackEvent> events() const override {
-    return ensemble_.tracker(ensemble_.index(model_->base)).events();
+    return ensemble_.tracker(ensemble_.index(model_->design.base)).events();
   }
 
   const CorrectionModel& model() const { return *model_; }
@@ -43,6 +45,7 @@ class CorrectedTracker final : public Tracker {
  private:
   Ensemble ensemble_;
   std::shared_ptr<const CorrectionModel> model_;
+  CorrectionBounds bounds_;
   Correction correction_;
 };
 

@@ -10,36 +10,33 @@
 namespace truebearing {
 namespace {
 
-int member(const Ensemble& ensemble, const std::string& name, const StateSpace& space) {
-  const int index = ensemble.index(name);
-  if (index < 0) throw InputError("correction", "needs the tracker \"" + name + "\", which does not run beside it");
-  if (ensemble.tracker(index).space() != space)
-    throw InputError("correction", "the tracker \"" + name + "\" has the state " + ensemble.tracker(index).space().name,
-                     "the state " + space.name);
-  return index;
+// The reference's estimate at `step`, and nothing of what a tracker predicted, innovated or gained: the slot is one of
+// corrected records, whose blocks of that kind nobody fills.
+void begin_record(const StepRecord& step, const StepRecord& reference, StepRecord& corrected) {
+  corrected.track = step.track;
+  corrected.time_s = step.time_s;
+  corrected.status = step.status;
+  corrected.space = step.space;
+  corrected.sensor = step.sensor;
+  corrected.x = reference.x;
+  corrected.P = reference.P;
+  corrected.correction.emplace();
 }
 
 }  // namespace
 
-Correction::Correction(std::shared_ptr<const CorrectionModel> model, const Ensemble& ensemble)
-    : model_(std::move(model)),
-      base_(member(ensemble, model_->base, *model_->space)),
-      reference_(member(ensemble, model_->reference, *model_->space)),
-      source_(member(ensemble, model_->covariance_of, *model_->space)),
-      prototype_(model_->features, *model_->space, model_->frame, [&](const std::string& name) {
-        return ensemble.tracker(name.empty() ? base_ : member(ensemble, name, *model_->space)).blocks();
-      }) {
+Correction::Correction(std::shared_ptr<const CorrectionModel> model, const Ensemble& ensemble, CorrectionBounds bounds)
+    : model_(std::move(model)), bounds_(std::move(bounds)), inputs_(model_->design, *model_->space, ensemble) {
   model_->validate();
-  for (const std::string& name : prototype_.companions()) companions_.push_back(member(ensemble, name, *model_->space));
-  companion_records_.resize(companions_.size());
-  if (model_->referee && !ensemble.tracker(base_).blocks().measures_position)
-    throw InputError("correction", "has a referee, and \"" + model_->base + "\" measures no position",
+  bounds_.validate();
+  if (bounds_.referee && !ensemble.tracker(inputs_.base()).blocks().measures_position)
+    throw InputError("correction", "has a referee, and \"" + model_->design.base + "\" measures no position",
                      "a base that measures positions, or no referee");
   reset();
 }
 
 void Correction::reset() {
-  tracks_.assign(1, Track{-1, false, prototype_, {}});
+  tracks_.assign(1, Track{-1, false, inputs_.extractor(), {}});
   records_.assign(1, StepRecord{});
 }
 
@@ -47,7 +44,7 @@ Correction::Track& Correction::track_of(int id) {
   auto slot = std::find_if(tracks_.begin(), tracks_.end(), [&](const Track& t) { return t.id == id; });
   if (slot == tracks_.end()) {
     slot = std::find_if(tracks_.begin(), tracks_.end(), [](const Track& t) { return !t.seen; });
-    if (slot == tracks_.end()) slot = tracks_.insert(tracks_.end(), Track{id, true, prototype_, {}});
+    if (slot == tracks_.end()) slot = tracks_.insert(tracks_.end(), Track{id, true, inputs_.extractor(), {}});
     slot->referee = {};
   }
   slot->id = id;
@@ -56,50 +53,43 @@ Correction::Track& Correction::track_of(int id) {
 }
 
 std::span<const StepRecord> Correction::correct(const Ensemble& ensemble) {
-  const std::span<const StepRecord> references = ensemble.records(reference_);
+  const std::span<const StepRecord> references = ensemble.records(inputs_.reference());
   if (records_.size() < references.size()) records_.resize(references.size());
   for (Track& track : tracks_)
     track.seen =
         std::any_of(references.begin(), references.end(), [&](const StepRecord& r) { return r.track == track.id; });
 
   for (std::size_t i = 0; i < references.size(); ++i) {
-    const StepRecord& reference = references[i];
-    const StepRecord* base = ensemble.record(base_, reference.track);
-    const StepRecord* source = ensemble.record(source_, reference.track);
-    for (std::size_t c = 0; c < companions_.size(); ++c)
-      companion_records_[c] = ensemble.record(companions_[c], reference.track);
-    if (!base || !source || base->status == StepStatus::failed) {
-      records_[i] = reference;
-      records_[i].correction = CorrectionOutcome{.base_x = reference.x, .base_P = reference.P};
+    const CorrectionInputs::Records step = inputs_.records(ensemble, references[i].track);
+    if (!step.complete()) {
+      begin_record(references[i], references[i], records_[i]);
       continue;
     }
-    Track& track = track_of(reference.track);
-    track.extractor.extract(*base, companion_records_, features_);
-    if (model_->referee) track.referee.judge(*base, *model_->referee);
-    correct_record(*base, reference, *source, track, records_[i]);
+    Track& track = track_of(references[i].track);
+    inputs_.extract(ensemble, *step.base, track.extractor, features_);
+    if (bounds_.referee) track.referee.judge(*step.base, *bounds_.referee);
+    correct_record(step, track, records_[i]);
   }
   return {records_.data(), references.size()};
 }
 
-void Correction::correct_record(const StepRecord& base, const StepRecord& reference, const StepRecord& source,
-                                Track& track, StepRecord& corrected) {
-  const FuzzyNetwork& network = model_->network;
-  const FrameRotation& rotation = track.extractor.rotation();
-  corrected = base;
-  corrected.correction = CorrectionOutcome{.base_x = base.x, .base_P = base.P};
-  corrected.x = reference.x;
-  corrected.P = reference.P;
+void Correction::correct_record(const CorrectionInputs::Records& step, Track& track, StepRecord& corrected) {
+  const StepRecord& base = *step.base;
+  const StepRecord& reference = *step.reference;
+  begin_record(base, reference, corrected);
+  corrected.correction->base_x = base.x;
+  corrected.correction->base_P = base.P;
   if (!features_.allFinite()) return;  // g = 0
 
-  network.strengths(features_, phi_);
-  BoundedVector output = network.output(phi_);
-  if (model_->output_in_sigma) output.array() *= rotation.covariance(base.P).diagonal().array().sqrt();
-  const BoundedVector d = base.x + rotation.vector(output) - reference.x;
-  const BoundedMatrix P_c = rotation.covariance(model_->head_covariance(phi_, rotation.covariance(source.P)));
-  const Limited limited = limit_kappa(reference.P, d, model_->kappa);
-  double g = model_->gate ? model_->gate->weight(features_, disagreement(d, P_c, reference.P)) : 1.0;
-  if (model_->referee) {
-    g *= track.referee.weight(*model_->referee);
+  model_->network.strengths(features_, phi_);
+  const OutputUnits units = inputs_.units(track.extractor, base);
+  const BoundedVector d = base.x + units.state(model_->network.output(phi_)) - reference.x;
+  const BoundedMatrix P_c = units.in_frame(model_->head_covariance(phi_, units.in_frame(step.source->P)));
+  const Limited limited = limit_kappa(reference.P, d, bounds_.kappa);
+  const bool gated = bounds_.gate && model_->gate;
+  double g = gated ? model_->gate->weight(features_, disagreement(d, P_c, reference.P)) : 1.0;
+  if (bounds_.referee) {
+    g *= track.referee.weight(*bounds_.referee);
     track.referee.predict(base.time_s, reference.x + limited.d, reference.x);
   }
 

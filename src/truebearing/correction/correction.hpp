@@ -11,8 +11,9 @@
 #include <memory>
 #include <vector>
 
+#include "truebearing/correction/correction_bounds.hpp"
+#include "truebearing/correction/correction_inputs.hpp"
 #include "truebearing/correction/correction_model.hpp"
-#include "truebearing/correction/feature_extractor.hpp"
 #include "truebearing/tracker/ensemble.hpp"
 
 namespace truebearing {
@@ -20,11 +21,12 @@ namespace truebearing {
 class Correction {
  public:
   /// Binds the model to the members of an ensemble by their names. Throws InputError where a member is missing, has
-  /// another state space or lacks what a feature reads.
-  Correction(std::shared_ptr<const CorrectionModel> model, const Ensemble& ensemble);
+  /// another state space or lacks what a feature or the referee reads, or where model or bounds are invalid.
+  Correction(std::shared_ptr<const CorrectionModel> model, const Ensemble& ensemble, CorrectionBounds bounds = {});
 
-  /// One corrected record per track of the reference, from the ensemble's last step. Call it once per step. Valid until
-  /// the next call. Allocates only when a track appears.
+  /// One corrected record per track of the reference, from the ensemble's last step: an estimate, its covariance and
+  /// the outcome of the correction, without a prediction, innovation or gain. Call it once per step. Valid until the
+  /// next call. Allocates only when a track appears.
   std::span<const StepRecord> correct(const Ensemble& ensemble);
   void reset();
 
@@ -39,21 +41,15 @@ class Correction {
   };
 
   Track& track_of(int id);
-  void correct_record(const StepRecord& base, const StepRecord& reference, const StepRecord& source, Track& track,
-                      StepRecord& corrected);
+  void correct_record(const CorrectionInputs::Records& step, Track& track, StepRecord& corrected);
 
   std::shared_ptr<const CorrectionModel> model_;
-  int base_;
-  int reference_;
-  int source_;
-  std::vector<int> companions_;
-
-  FeatureExtractor prototype_;
+  CorrectionBounds bounds_;
+  CorrectionInputs inputs_;
   std::vector<Track> tracks_;
-  std::vector<const StepRecord*> companion_records_;
   std::vector<StepRecord> records_;
   // Work space of one step.
-  FuzzyNetwork::Inputs features_;
+  CorrectionInputs::Features features_;
   FuzzyNetwork::Strengths phi_;
 };
 

@@ -1,6 +1,5 @@
 #include "truebearing/correction/correction_model.hpp"
 
-#include <cmath>
 #include <fmt/format.h>
 
 #include "truebearing/core/covariance.hpp"
@@ -16,7 +15,7 @@ void require(bool valid, const char* where, const std::string& found, const std:
 }  // namespace
 
 BoundedMatrix CorrectionModel::head_covariance(const FuzzyNetwork::Strengths& phi, const BoundedMatrix& P) const {
-  if (moments.size() == 0) return phi.dot(inflation) * P;
+  if (!design.covariance_moments) return phi.dot(inflation) * P;
   const Eigen::Index n = P.rows();
   const BoundedVector sigma = P.diagonal().cwiseSqrt();
   BoundedMatrix mean(n, n);
@@ -27,7 +26,7 @@ BoundedMatrix CorrectionModel::head_covariance(const FuzzyNetwork::Strengths& ph
 }
 
 void CorrectionModel::validate() const {
-  const auto d = static_cast<Eigen::Index>(features.size());
+  const auto d = static_cast<Eigen::Index>(design.features.size());
   const Eigen::Index M = network.rules();
   const Eigen::Index n = space ? space->size() : 0;
   require(n > 0, "state", "has no components", "a state space");
@@ -35,11 +34,11 @@ void CorrectionModel::validate() const {
           fmt::format("{} of them for a network with {} inputs", d, network.inputs()), "one feature per input");
   require(network.outputs() == n, "rules", fmt::format("consequents of {} numbers", network.outputs()),
           fmt::format("{}, one per component of the state", n));
-  require(!base.empty() && !reference.empty() && !covariance_of.empty(), "trackers", "a name is empty",
-          "names of base, reference and covariance_of");
-  require(kappa > 0.0, "kappa", fmt::format("is {}", kappa), "a number > 0, or null for none");
-  space_in(frame, *space);
-  if (moments.size() == 0) {
+  require(!design.base.empty() && !design.reference.empty() && !design.covariance_of.empty(), "trackers",
+          "a name is empty", "names of base, reference and covariance_of");
+  space_in(design.frame, *space);
+  if (!design.covariance_moments) {
+    require(moments.size() == 0, "moments", "stand beside inflation", "one of the two");
     require(inflation.size() == M && inflation.allFinite() && (inflation.array() > 0.0).all(), "inflation",
             fmt::format("holds {} numbers, or one that is not > 0", inflation.size()),
             fmt::format("{} numbers > 0", M));
@@ -50,14 +49,6 @@ void CorrectionModel::validate() const {
     for (Eigen::Index j = 0; j < M; ++j)
       require(is_covariance(BoundedMatrix(moments.row(j).reshaped(n, n))), "moments",
               fmt::format("of rule {} are no covariance", j), "symmetric positive semi-definite matrices");
-  }
-  if (referee) {
-    require(referee->alpha > 0.0 && referee->alpha <= 1.0, "referee.alpha", fmt::format("is {}", referee->alpha),
-            "a number in (0, 1]");
-    require(referee->tolerance > 0.0 && std::isfinite(referee->tolerance), "referee.tolerance",
-            fmt::format("is {}", referee->tolerance), "a number > 0");
-    require(referee->edge > 0.0 && std::isfinite(referee->edge), "referee.edge", fmt::format("is {}", referee->edge),
-            "a number > 0");
   }
   require(usage.size() == M && usage.allFinite(), "usage", fmt::format("holds {} numbers", usage.size()),
           fmt::format("{} finite numbers", M));

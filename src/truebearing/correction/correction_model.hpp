@@ -1,44 +1,32 @@
 // CorrectionModel: all that a trained correction is made of, as it stands in a model file. Immutable while it runs.
 #pragma once
 
-#include <limits>
 #include <map>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "truebearing/core/state_space.hpp"
 #include "truebearing/correction/box_gate.hpp"
-#include "truebearing/correction/feature.hpp"
+#include "truebearing/correction/correction_design.hpp"
 #include "truebearing/correction/fuzzy_network.hpp"
-#include "truebearing/correction/referee.hpp"
 
 namespace truebearing {
 
 struct CorrectionModel {
   const StateSpace* space = nullptr;  ///< of the base's and the reference's state, and of the correction
 
-  std::string base;           ///< the tracker whose output is corrected
-  std::string reference;      ///< the tracker that is trusted: the base itself, or a tuned one
-  std::string covariance_of;  ///< the tracker whose covariance is inflated into the correction's own
+  CorrectionDesign design;
   /// Configuration of every tracker that takes part, as the study spelt it: a correction belongs to these.
   std::map<std::string, std::string> trackers;
 
-  Frame frame = Frame::state;  ///< that features and corrections are in
-  /// The network's outputs are in standard deviations of the base, component by component in the frame, and not in the
-  /// units of the state.
-  bool output_in_sigma = false;
-  std::vector<FeatureSpec> features;
   FuzzyNetwork network;
-  std::optional<BoxGate> gate;                             ///< absent: always open
-  double kappa = std::numeric_limits<double>::infinity();  ///< infinity: not limited
-  std::optional<RefereeOptions> referee;                   ///< absent: none
+  std::optional<BoxGate> gate;  ///< the box that the training data filled; absent: always open
 
-  /// The correction's own covariance, from one of two heads. `inflation` (M), > 0: (sum_j phi_j inflation_j) P, P that
-  /// of `covariance_of`.
+  /// The correction's own covariance, from one of two heads; the other is empty. `inflation` (M), > 0:
+  /// (sum_j phi_j inflation_j) P, P that of `covariance_of`.
   Eigen::VectorXd inflation;
-  /// Or `moments` (M x n n), each row a covariance in the frame, in standard deviations sigma of `covariance_of` there:
-  /// diag(sigma) (sum_j phi_j Sigma_j) diag(sigma). A mean of covariances is one.
+  /// Or, where the design says so, `moments` (M x n n), each row a covariance in the frame, in standard deviations
+  /// sigma of `covariance_of` there: diag(sigma) (sum_j phi_j Sigma_j) diag(sigma). A mean of covariances is one.
   Eigen::MatrixXd moments;
 
   // For the reader, per rule: what it is used for, and what the teacher said where it was used.

@@ -7,6 +7,7 @@
 
 #include "truebearing/core/error.hpp"
 #include "truebearing/core/suggestion.hpp"
+#include "truebearing/correction/correction_bounds.hpp"
 #include "truebearing/io/json_file.hpp"
 
 namespace truebearing {
@@ -16,7 +17,7 @@ using Json = nlohmann::json;
 using OrderedJson = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "truebearing-correction";
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 constexpr const char* kSigma = "sigma";
 constexpr const char* kMoments = "moments";
 
@@ -157,35 +158,47 @@ std::vector<std::string> read_texts(ObjectReader& object, const std::string& key
   return texts;
 }
 
+// Version 1 held the bounds that the model was validated with; now its provenance remembers them.
+std::string read_first_bounds(ObjectReader& file) {
+  CorrectionBounds bounds{file.number_or_none("kappa"), !file.at("gate").is_null(), {}};
+  if (file.has("referee")) {
+    ObjectReader referee = file.object("referee");
+    bounds.referee = RefereeOptions{referee.number("alpha"), referee.number("tolerance"), referee.number("edge")};
+    referee.finish();
+  }
+  return describe(bounds);
+}
+
 CorrectionModel model_from(const Json& json, const std::string& name) {
   ObjectReader file(json, name, "");
   if (file.text("format") != kFormat) throw file.error("format", "is not " + std::string(kFormat), kFormat);
-  if (const double version = file.number("version"); version != kVersion)
-    throw file.error("version", fmt::format("is {}", version), fmt::format("{}, which this program reads", kVersion));
+  const double version = file.number("version");
+  if (version != 1 && version != kVersion)
+    throw file.error("version", fmt::format("is {}", version),
+                     fmt::format("1 or {}, which this program reads", kVersion));
 
   CorrectionModel model;
   model.space = &state_space_of_components(read_texts(file, "state", kMaxDimension));
-  model.base = file.text("base");
-  model.reference = file.text("reference");
-  model.covariance_of = file.text("covariance_of");
-  model.kappa = file.number_or_none("kappa");
+  model.design.base = file.text("base");
+  model.design.reference = file.text("reference");
+  model.design.covariance_of = file.text("covariance_of");
   ObjectReader trackers = file.object("trackers");
   for (const auto& [key, value] : json["trackers"].items()) model.trackers[key] = trackers.text(key);
 
   if (file.has("frame")) {
     const std::string frame = file.text("frame");
-    model.frame = frame_of(frame);
-    if (frame != to_string(model.frame))
+    model.design.frame = frame_of(frame);
+    if (frame != to_string(model.design.frame))
       throw file.error("frame", "is \"" + frame + "\"", suggestion(frame, frame_names()));
   }
   if (file.has("output_in")) {
     if (file.text("output_in") != kSigma)
       throw file.error("output_in", "is not \"sigma\"", "\"sigma\", or no such key");
-    model.output_in_sigma = true;
+    model.design.output_in_sigma = true;
   }
   const Json& features = file.array("features", 1, FuzzyNetwork::kMaxInputs);
   for (std::size_t i = 0; i < features.size(); ++i)
-    model.features.push_back(read_feature(ObjectReader(features[i], name, fmt::format("features[{}]", i))));
+    model.design.features.push_back(read_feature(ObjectReader(features[i], name, fmt::format("features[{}]", i))));
   const auto d = static_cast<Eigen::Index>(features.size());
   const auto n = static_cast<Eigen::Index>(model.space->size());
 
@@ -204,18 +217,12 @@ CorrectionModel model_from(const Json& json, const std::string& name) {
     gate.finish();
   }
 
-  if (file.has("referee")) {
-    ObjectReader referee = file.object("referee");
-    model.referee = RefereeOptions{referee.number("alpha"), referee.number("tolerance"), referee.number("edge")};
-    referee.finish();
-  }
-
   const Json& rules = file.array("rules", 1, FuzzyNetwork::kMaxRules);
   const auto M = static_cast<Eigen::Index>(rules.size());
   parameters.centres.resize(M, d);
   parameters.widths.resize(M, d);
   parameters.consequents.resize(M, n);
-  const bool moments = file.has("covariance");
+  const bool moments = model.design.covariance_moments = file.has("covariance");
   if (moments && file.text("covariance") != kMoments)
     throw file.error("covariance", "is not \"moments\"", "\"moments\", or no such key");
   model.inflation.resize(moments ? 0 : M);
@@ -238,6 +245,7 @@ CorrectionModel model_from(const Json& json, const std::string& name) {
 
   ObjectReader provenance = file.object("provenance");
   for (const auto& [key, value] : json["provenance"].items()) model.provenance[key] = provenance.text(key);
+  if (version == 1) model.provenance["bounds"] = read_first_bounds(file);
   file.finish();
   try {
     model.network = FuzzyNetwork(std::move(parameters));
@@ -264,16 +272,15 @@ std::string model_text(const CorrectionModel& model) {
   json["format"] = kFormat;
   json["version"] = kVersion;
   json["state"] = model.space->components;
-  json["base"] = model.base;
-  json["reference"] = model.reference;
-  json["covariance_of"] = model.covariance_of;
-  json["kappa"] = limit_json(model.kappa);
+  json["base"] = model.design.base;
+  json["reference"] = model.design.reference;
+  json["covariance_of"] = model.design.covariance_of;
   json["trackers"] = OrderedJson::object();
   for (const auto& [name, configuration] : model.trackers) json["trackers"][name] = configuration;
-  if (model.frame != Frame::state) json["frame"] = std::string(to_string(model.frame));
-  if (model.output_in_sigma) json["output_in"] = kSigma;
+  if (model.design.frame != Frame::state) json["frame"] = std::string(to_string(model.design.frame));
+  if (model.design.output_in_sigma) json["output_in"] = kSigma;
   json["features"] = OrderedJson::array();
-  for (const FeatureSpec& feature : model.features) json["features"].push_back(feature_json(feature));
+  for (const FeatureSpec& feature : model.design.features) json["features"].push_back(feature_json(feature));
   json["normalisation"] = {{"input_mean", array_json(parameters.input_mean)},
                            {"input_scale", array_json(parameters.input_scale)},
                            {"input_clip", parameters.input_clip},
@@ -285,16 +292,13 @@ std::string model_text(const CorrectionModel& model) {
                     {"edge_fraction", model.gate->edge_fraction},
                     {"largest_disagreement", limit_json(model.gate->largest_disagreement)},
                     {"disagreement_edge_fraction", model.gate->disagreement_edge_fraction}};
-  if (model.referee)
-    json["referee"] = {
-        {"alpha", model.referee->alpha}, {"tolerance", model.referee->tolerance}, {"edge", model.referee->edge}};
-  if (model.moments.size() > 0) json["covariance"] = kMoments;
+  if (model.design.covariance_moments) json["covariance"] = kMoments;
   json["rules"] = OrderedJson::array();
   for (Eigen::Index j = 0; j < parameters.centres.rows(); ++j) {
     OrderedJson rule{{"centre", array_json(parameters.centres.row(j))},
                      {"width", array_json(parameters.widths.row(j))},
                      {"consequent", array_json(parameters.consequents.row(j))}};
-    if (model.moments.size() > 0)
+    if (model.design.covariance_moments)
       rule["moments"] = array_json(model.moments.row(j));
     else
       rule["inflation"] = model.inflation[j];

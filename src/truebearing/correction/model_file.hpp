@@ -1,5 +1,6 @@
 // The model file: a CorrectionModel as JSON, readable and editable by hand. Size, nesting, version, shapes and numbers
-// are checked before anything is built from it. save -> load -> save is byte-identical.
+// are checked before anything is built from it. save -> load -> save is byte-identical. Files of version 1, which also
+// held kappa and the referee, are read too.
 #pragma once
 
 #include <filesystem>

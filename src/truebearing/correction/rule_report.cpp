@@ -21,14 +21,14 @@ std::string amount(double value) {
 
 // Corrections in words: "+12 m, -3 m/s" on a line; in a turned frame each with its direction.
 std::string amounts(const CorrectionModel& model, const Eigen::VectorXd& values) {
-  const StateSpace& space = space_in(model.frame, *model.space);
+  const StateSpace& space = space_in(model.design.frame, *model.space);
   std::string text;
   for (int i = 0; i < space.size(); ++i) {
     const std::string& component = space.components[static_cast<std::size_t>(i)];
     text += fmt::format("{}{} ", i == 0 ? "" : ", ", amount(values[i]));
-    if (model.output_in_sigma)
+    if (model.design.output_in_sigma)
       text += fmt::format("sigma of {}", component);
-    else if (model.frame != Frame::state)
+    else if (model.design.frame != Frame::state)
       text += fmt::format("{} {}", unit_of(component), component.substr(0, component.find('_')));
     else
       text += unit_of(component);
@@ -60,10 +60,10 @@ std::string rule_sentences(const CorrectionModel& model) {
   FuzzyNetwork::Strengths phi;
   for (const Eigen::Index rule : order) {
     std::string conditions;
-    for (std::size_t i = 0; i < model.features.size(); ++i)
-      conditions += fmt::format("{}{} is {}", i == 0 ? "" : " AND ", describe(model.features[i]),
+    for (std::size_t i = 0; i < model.design.features.size(); ++i)
+      conditions += fmt::format("{}{} is {}", i == 0 ? "" : " AND ", describe(model.design.features[i]),
                                 term_word(parameters.centres(rule, static_cast<Eigen::Index>(i)),
-                                          mirror_parity(model.features[i], model.frame, *model.space)));
+                                          mirror_parity(model.design.features[i], model.design.frame, *model.space)));
     const FuzzyNetwork::Inputs centre =
         (parameters.input_mean.array() +
          parameters.centres.row(rule).transpose().array() * parameters.input_scale.array())

@@ -12,9 +12,10 @@ void TrackerSet::show_member(const std::string& name) {
   entries_.push_back({name, member, -1, {}});
 }
 
-void TrackerSet::show_correction(std::string name, std::shared_ptr<const CorrectionModel> model) {
-  const int base = ensemble_.index(model->base);
-  corrections_.emplace_back(std::move(model), ensemble_);
+void TrackerSet::show_correction(std::string name, std::shared_ptr<const CorrectionModel> model,
+                                 CorrectionBounds bounds) {
+  const int base = ensemble_.index(model->design.base);
+  corrections_.emplace_back(std::move(model), ensemble_, std::move(bounds));
   entries_.push_back({std::move(name), base, static_cast<int>(corrections_.size()) - 1, {}});
 }
 

@@ -15,9 +15,10 @@ class TrackerSet {
  public:
   explicit TrackerSet(Ensemble ensemble) : ensemble_(std::move(ensemble)) {}
 
-  /// Shows the ensemble's member of that name, or a correction of members under a name of its own, as the next entry.
+  /// Shows the ensemble's member of that name, or a bounded correction of members under a name of its own, as the next
+  /// entry.
   void show_member(const std::string& name);
-  void show_correction(std::string name, std::shared_ptr<const CorrectionModel> model);
+  void show_correction(std::string name, std::shared_ptr<const CorrectionModel> model, CorrectionBounds bounds);
 
   int size() const { return static_cast<int>(entries_.size()); }
   const std::string& name(int entry) const { return at(entry).name; }

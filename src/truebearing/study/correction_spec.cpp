@@ -1,11 +1,9 @@
 #include "truebearing/study/correction_spec.hpp"
 
-#include <algorithm>
+#include <limits>
 
 namespace truebearing {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 FeatureSpec read_feature(TableReader& table) {
   FeatureSpec feature;
@@ -34,6 +32,14 @@ TrainingSpec::Mirror read_mirror(TableReader& table) {
     return TrainingSpec::Mirror::pairs;
   }
   return table.boolean_or("mirror", false) ? TrainingSpec::Mirror::images : TrainingSpec::Mirror::none;
+}
+
+// kappa = a number, or inf for no limit.
+double read_kappa(TableReader& table) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const toml::node* node = table.node("kappa");
+  if (node && node->value<double>() == kInfinity) return kInfinity;
+  return table.number_or("kappa", CorrectionBounds{}.kappa, kPositive);
 }
 
 // referee = true, false, or { alpha, tolerance, edge }.
@@ -85,48 +91,39 @@ TrainingSpec read_training(TableReader& table) {
 }
 
 // gate = true, false, or { quantile, edge_fraction, disagreement_quantile, disagreement_edge_fraction }.
-std::optional<GateSpec> read_gate(TableReader& table) {
-  GateSpec gate;
+void read_gate(TableReader& table, CorrectionSpec& spec) {
   const toml::node* node = table.node("gate");
-  if (!node || node->is_boolean()) return table.boolean_or("gate", true) ? std::optional<GateSpec>(gate) : std::nullopt;
+  if (!node || node->is_boolean()) {
+    spec.bounds.gate = table.boolean_or("gate", true);
+    return;
+  }
   TableReader sub = table.table("gate");
-  gate.quantile = sub.number_or("quantile", gate.quantile, {0.0, 0.25});
-  gate.edge_fraction = sub.number_or("edge_fraction", gate.edge_fraction, {0.0, 10.0, true});
-  gate.disagreement_quantile = sub.number_or("disagreement_quantile", gate.disagreement_quantile, {0.0, 0.5});
-  gate.disagreement_edge_fraction =
-      sub.number_or("disagreement_edge_fraction", gate.disagreement_edge_fraction, {0.0, 10.0, true});
+  BoxSpec& box = spec.box;
+  box.quantile = sub.number_or("quantile", box.quantile, {0.0, 0.25});
+  box.edge_fraction = sub.number_or("edge_fraction", box.edge_fraction, {0.0, 10.0, true});
+  box.disagreement_quantile = sub.number_or("disagreement_quantile", box.disagreement_quantile, {0.0, 0.5});
+  box.disagreement_edge_fraction =
+      sub.number_or("disagreement_edge_fraction", box.disagreement_edge_fraction, {0.0, 10.0, true});
   sub.finish();
-  return gate;
 }
 
 }  // namespace
 
-std::vector<std::string> CorrectionSpec::members() const {
-  std::vector<std::string> names;
-  const auto add = [&](const std::string& name) {
-    if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-  };
-  add(base);
-  add(reference);
-  add(covariance_of);
-  for (const FeatureSpec& feature : features) add(feature.companion);
-  return names;
-}
-
 CorrectionSpec read_correction_spec(TableReader& table) {
   CorrectionSpec spec;
-  spec.base = table.text("base");
-  spec.reference = table.text_or("reference", spec.base);
-  spec.covariance_of = table.text_or("covariance_of", spec.base);
-  spec.kappa = table.number_or("kappa", kInfinity, kPositive);
-  spec.gate = read_gate(table);
-  spec.referee = read_referee(table);
-  spec.frame = frame_of(table.choice_or("frame", frame_names(), "state"));
-  spec.output_in_sigma = table.choice_or("output_in", {"units", "sigma"}, "units") == "sigma";
-  spec.covariance_moments = table.choice_or("covariance", {"inflation", "moments"}, "inflation") == "moments";
+  CorrectionDesign& design = spec.design;
+  design.base = table.text("base");
+  design.reference = table.text_or("reference", design.base);
+  design.covariance_of = table.text_or("covariance_of", design.base);
+  spec.bounds.kappa = read_kappa(table);
+  spec.bounds.referee = read_referee(table);
+  read_gate(table, spec);
+  design.frame = frame_of(table.choice_or("frame", frame_names(), "state"));
+  design.output_in_sigma = table.choice_or("output_in", {"units", "sigma"}, "units") == "sigma";
+  design.covariance_moments = table.choice_or("covariance", {"inflation", "moments"}, "inflation") == "moments";
   spec.model = table.resolve(table.text("model"));
-  for (TableReader& feature : table.tables("features")) spec.features.push_back(read_feature(feature));
-  if (spec.features.empty())
+  for (TableReader& feature : table.tables("features")) design.features.push_back(read_feature(feature));
+  if (design.features.empty())
     throw table.error("features", "is missing or empty", "an array of tables with a `kind` each");
   TableReader training = table.table("training");
   spec.training = read_training(training);

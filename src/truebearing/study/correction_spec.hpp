@@ -4,14 +4,13 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "truebearing/correction/feature.hpp"
-#include "truebearing/correction/referee.hpp"
+#include "truebearing/correction/correction_bounds.hpp"
+#include "truebearing/correction/correction_design.hpp"
 #include "truebearing/io/table_reader.hpp"
 
 namespace truebearing {
@@ -47,7 +46,8 @@ struct TrainingSpec {
   std::optional<std::filesystem::path> covariance_scenario;
 };
 
-struct GateSpec {
+/// How the box of the gate is fitted, whether or not the study's gate uses it.
+struct BoxSpec {
   double quantile = 0.001;  ///< the box leaves out this share of the training data at either end of each feature
   double edge_fraction = 0.1;
   double disagreement_quantile =
@@ -56,21 +56,11 @@ struct GateSpec {
 };
 
 struct CorrectionSpec {
-  std::string base;
-  std::string reference;
-  std::string covariance_of;
-  double kappa = std::numeric_limits<double>::infinity();
-  std::optional<GateSpec> gate;
-  std::optional<RefereeOptions> referee;
-  Frame frame = Frame::state;
-  bool output_in_sigma = false;
-  bool covariance_moments = false;  ///< covariance head: residual moments per rule, not one inflation
-  std::vector<FeatureSpec> features;
+  CorrectionDesign design;
+  CorrectionBounds bounds;
+  BoxSpec box;
   std::filesystem::path model;
   TrainingSpec training;
-
-  /// Names of all trackers that it looks at, each once: base, reference, covariance source, companions.
-  std::vector<std::string> members() const;
 };
 
 CorrectionSpec read_correction_spec(TableReader& table);

@@ -13,21 +13,12 @@
 #include "truebearing/evaluation/comparison.hpp"
 #include "truebearing/evaluation/tracker_set.hpp"
 #include "truebearing/simulation/scenario.hpp"
-#include "truebearing/study/correction_spec.hpp"
 #include "truebearing/study/parameters_file.hpp"
 #include "truebearing/study/recorded_file.hpp"
-#include "truebearing/study/timed_scoring.hpp"
+#include "truebearing/study/study_scoring.hpp"
+#include "truebearing/study/tracker_spec.hpp"
 
 namespace truebearing {
-
-struct TrackerSpec {
-  std::string name;
-  std::string kind;
-  toml::table configuration;                 ///< its table, over that of the tracker it is `like`
-  std::vector<std::string> tune;             ///< dotted paths of the numbers that `truebearing tune` fits
-  bool shown = true;                         ///< false for companions that no table needs
-  std::optional<CorrectionSpec> correction;  ///< where kind is "corrected"
-};
 
 using CorrectionModels = std::map<std::string, std::shared_ptr<const CorrectionModel>>;
 
@@ -48,9 +39,9 @@ class Study {
   std::uint64_t seed() const { return seed_; }
   std::size_t runs() const { return runs_; }
   std::size_t tuning_runs() const { return tuning_runs_; }
-  const ScoringRule& scoring() const { return scoring_; }
-  const std::vector<std::pair<std::string, std::string>>& pairs() const { return pairs_; }
-  const std::vector<std::string>& bounds() const { return bounds_; }
+  const ScoringRule& scoring() const { return scoring_.rule; }
+  const std::vector<std::pair<std::string, std::string>>& pairs() const { return scoring_.pairs; }
+  const std::vector<std::string>& bounds() const { return scoring_.bounds; }
   const std::filesystem::path& parameters_path() const { return parameters_path_; }
 
   const std::vector<TrackerSpec>& trackers() const { return trackers_; }
@@ -65,17 +56,19 @@ class Study {
   toml::table configuration_of(const std::string& name) const;
   /// The same on one line with its kind: how a model file remembers a tracker.
   std::string configuration_line(const std::string& name) const;
-  /// A tracker of the study, ready to step; a corrected one brings its own ensemble and reads its model file.
-  std::unique_ptr<Tracker> make_tracker(const std::string& name) const;
+  /// A tracker of the study, ready to step; a corrected one brings its own ensemble, and its model from `models`, else
+  /// from its file.
+  std::unique_ptr<Tracker> make_tracker(const std::string& name, const CorrectionModels& models = {}) const;
   /// The trackers of those names (none of them corrected), in that order.
   Ensemble make_ensemble(const std::vector<std::string>& names) const;
-  /// All shown trackers over one ensemble; models from `models`, else from their files.
+  /// All shown trackers over one ensemble; models likewise.
   TrackerSet make_tracker_set(const CorrectionModels& models = {}) const;
 
   /// The model of a corrected tracker from its file, checked against this study. Throws InputError that names the
   /// command that makes it where it is missing or was made for other trackers or features.
   std::shared_ptr<const CorrectionModel> load_model(const std::string& name) const;
-  /// Throws InputError where the model was not trained for what the study says of that tracker.
+  /// Throws InputError where the model was not trained for what the study says of that tracker. What bounds a
+  /// correction is the study's to say, but a gate wants the box of its model.
   void check_model(const std::string& name, const CorrectionModel& model, const std::string& where) const;
 
   /// Options of a comparison as the study has them.
@@ -84,10 +77,7 @@ class Study {
  private:
   Study() = default;
   void read(const toml::table& table, const std::vector<std::string>& order);
-  void read_scoring(TableReader scoring);
-  void read_trackers(TableReader table, const std::vector<std::string>& order);
   void check_trackers();
-  void check_angle_bound(TableReader& scoring) const;
   void check_replay(const TrackerSpec& spec, const Tracker& tracker);
 
   std::filesystem::path path_;
@@ -98,11 +88,7 @@ class Study {
   std::uint64_t seed_ = 1;
   std::size_t runs_ = 1000;
   std::size_t tuning_runs_ = 300;
-  ScoringRule scoring_;
-  TimedScoring timed_;
-  std::optional<AngleBound> angle_bound_;
-  std::vector<std::pair<std::string, std::string>> pairs_;
-  std::vector<std::string> bounds_;
+  StudyScoring scoring_;
   std::filesystem::path parameters_path_;
   std::optional<ParametersFile> parameters_;
   std::vector<TrackerSpec> trackers_;

@@ -31,8 +31,8 @@ struct CorrectionOutcome {
   double gate = 0.0;             ///< g in [0, 1]
   bool limited = false;          ///< limit_kappa shortened the correction, or turned a non-finite one into zero
   double distance_sigmas = 0.0;  ///< Mahalanobis distance of the published estimate from the reference, reference P
-  BoundedVector base_x;          ///< (n)
-  BoundedMatrix base_P;          ///< (n x n)
+  BoundedVector base_x;          ///< (n); empty where the base gave no estimate, and the reference stands
+  BoundedMatrix base_P;          ///< (n x n); likewise
 };
 
 /// How a batch estimator came to its estimate (tma/).
@@ -60,6 +60,8 @@ struct StepRecord {
   BoundedVector x;                    ///< estimate (n)
   BoundedMatrix P;                    ///< its covariance (n x n)
 
+  // Of the tracker that filled the record: one that is corrected predicts, innovates and gains nothing of its own, and
+  // what its base did stands in the base's record.
   std::optional<Prediction> prediction;
   std::optional<Innovation> innovation;
   std::optional<BoundedMatrix> gain;             ///< K (n x m)

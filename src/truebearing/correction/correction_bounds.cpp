@@ -1,0 +1,29 @@
+#include "truebearing/correction/correction_bounds.hpp"
+
+#include <cmath>
+#include <fmt/format.h>
+
+#include "truebearing/core/error.hpp"
+
+namespace truebearing {
+
+void CorrectionBounds::validate() const {
+  const auto require = [](bool valid, const char* where, double found, const char* wanted) {
+    if (!valid) throw InputError(where, fmt::format("is {}", found), wanted);
+  };
+  require(kappa > 0.0, "kappa", kappa, "a number > 0, or infinity for none");
+  if (!referee) return;
+  require(referee->alpha > 0.0 && referee->alpha <= 1.0, "referee.alpha", referee->alpha, "a number in (0, 1]");
+  require(referee->tolerance > 0.0 && std::isfinite(referee->tolerance), "referee.tolerance", referee->tolerance,
+          "a number > 0");
+  require(referee->edge > 0.0 && std::isfinite(referee->edge), "referee.edge", referee->edge, "a number > 0");
+}
+
+std::string describe(const CorrectionBounds& bounds) {
+  std::string text = fmt::format("kappa {}, {}gate, ", bounds.kappa, bounds.gate ? "" : "no ");
+  if (!bounds.referee) return text + "no referee";
+  const auto& [alpha, tolerance, edge] = *bounds.referee;
+  return text + fmt::format("referee of alpha {}, tolerance {}, edge {}", alpha, tolerance, edge);
+}
+
+}  // namespace truebearing

@@ -1,0 +1,26 @@
+// CorrectionBounds: what keeps a correction within bounds while it runs. No part of it enters the training: it stands
+// in the study, and changing it asks for no new model.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "truebearing/correction/referee.hpp"
+
+namespace truebearing {
+
+struct CorrectionBounds {
+  double kappa = 3.0;                          ///< > 0, limit_kappa's; infinity: not limited
+  bool gate = true;                            ///< whether the model's box closes the gate, where it has one
+  std::optional<RefereeOptions> referee = {};  ///< absent: none
+
+  bool operator==(const CorrectionBounds&) const = default;
+
+  /// Throws InputError where a number is out of range.
+  void validate() const;
+};
+
+/// For people: "kappa 3, gate, no referee".
+std::string describe(const CorrectionBounds& bounds);
+
+}  // namespace truebearing

@@ -1,0 +1,34 @@
+#include "truebearing/correction/correction_design.hpp"
+
+#include <algorithm>
+
+namespace truebearing {
+
+std::vector<std::string> CorrectionDesign::members() const {
+  std::vector<std::string> names;
+  const auto add = [&](const std::string& name) {
+    if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  };
+  add(base);
+  add(reference);
+  add(covariance_of);
+  for (const FeatureSpec& feature : features) add(feature.companion);
+  return names;
+}
+
+std::string differences(const CorrectionDesign& a, const CorrectionDesign& b) {
+  std::string keys;
+  const auto compare = [&](const char* key, const auto& of_a, const auto& of_b) {
+    if (of_a != of_b) keys += (keys.empty() ? "" : ", ") + std::string(key);
+  };
+  compare("base", a.base, b.base);
+  compare("reference", a.reference, b.reference);
+  compare("covariance_of", a.covariance_of, b.covariance_of);
+  compare("frame", a.frame, b.frame);
+  compare("output_in", a.output_in_sigma, b.output_in_sigma);
+  compare("covariance", a.covariance_moments, b.covariance_moments);
+  compare("features", a.features, b.features);
+  return keys;
+}
+
+}  // namespace truebearing

@@ -1,0 +1,83 @@
+// What of a study cannot be right is refused when it is read, and a model that is not its own before it runs.
+#include <fmt/format.h>
+
+#include "truebearing/correction/feature_extractor.hpp"
+#include "truebearing/correction/model_file.hpp"
+#include "truebearing/study/study.hpp"
+#include "truebearing/study/tracker_registry.hpp"
+#include "truebearing/tracker/recorded_tracker.hpp"
+#include "truebearing/tracker/step_log_scenario.hpp"
+
+namespace truebearing {
+
+void Study::check_trackers() {
+  for (const TrackerSpec& spec : trackers_) {
+    if (!spec.correction) {
+      TableReader reader(spec.configuration, path_.string(), "trackers." + spec.name);
+      ask_for_study_keys(reader);
+      check_replay(spec, *truebearing::make_tracker(spec.kind, reader));
+      continue;
+    }
+    for (const std::string& member : spec.correction->design.members())
+      if (tracker(member).correction)
+        throw InputError(path_.string() + ": trackers." + spec.name,
+                         "looks at \"" + member + "\", which is itself corrected", "trackers of other kinds");
+    for (const auto& [quantity, threshold] : spec.correction->training.leave_out_beyond)
+      if (scenario_->truth_space().quantity_index(quantity) < 0)
+        throw InputError(path_.string() + ": trackers." + spec.name + ".training.leave_out_beyond." + quantity,
+                         "is no quantity of the scenario's truth");
+    // Features that the records cannot give are refused here, not at the first step.
+    const auto made = [&](const std::string& name) {
+      const TrackerSpec& member = tracker(name.empty() ? spec.correction->design.base : name);
+      TableReader reader(member.configuration, path_.string(), "trackers." + member.name);
+      return truebearing::make_tracker(member.kind, reader);
+    };
+    try {
+      FeatureExtractor(spec.correction->design.features, made("")->space(), spec.correction->design.frame,
+                       [&](const std::string& name) { return made(name)->blocks(); });
+    } catch (const InputError& error) {
+      throw InputError(path_.string() + ": trackers." + spec.name + ": " + error.where(), error.found(), error.valid());
+    }
+  }
+}
+
+// A tracker that replays what measurements carry needs the logs of one.
+void Study::check_replay(const TrackerSpec& spec, const Tracker& tracker) {
+  const auto* recorded = dynamic_cast<const RecordedTracker*>(&tracker);
+  if (!recorded || !recorded->replays_measurements()) return;
+  const std::string where = path_.string() + ": trackers." + spec.name;
+  auto* logs = dynamic_cast<StepLogScenario*>(scenario_.get());
+  if (!logs) throw InputError(where, "has no log to replay", "a key `file`, or a scenario of kind \"step_logs\"");
+  if (tracker.space() != logs->truth_space())
+    throw InputError(where + ".components", fmt::format("are {}", fmt::join(tracker.space().components, ", ")),
+                     fmt::format("{}, as the scenario's logs", fmt::join(logs->truth_space().components, ", ")));
+  if (tracker.blocks().innovation) logs->require_innovation();
+}
+
+std::shared_ptr<const CorrectionModel> Study::load_model(const std::string& name) const {
+  const CorrectionSpec& spec = tracker(name).correction.value();
+  if (!std::filesystem::exists(spec.model))
+    throw InputError(spec.model.string(), "does not exist", fmt::format("run `truebearing train {}`", path_.string()));
+  auto model = std::make_shared<CorrectionModel>(read_model_file(spec.model));
+  check_model(name, *model, spec.model.string());
+  return model;
+}
+
+void Study::check_model(const std::string& name, const CorrectionModel& model, const std::string& where) const {
+  const CorrectionSpec& spec = tracker(name).correction.value();
+  const std::string remedy = fmt::format("run `truebearing train {}`", path_.string());
+  const auto differs = [&](const std::string& what) { return InputError(where, "was trained for " + what, remedy); };
+  if (model.design != spec.design)
+    throw differs("another " + differences(model.design, spec.design) + " than the study has for \"" + name + "\"");
+  if (spec.bounds.gate && !model.gate)
+    throw InputError(where, "holds no box, which the gate of \"" + name + "\" wants", remedy + ", or gate = false");
+  for (const std::string& member : spec.design.members()) {
+    const auto found = model.trackers.find(member);
+    const std::string configuration = configuration_line(member);
+    if (found == model.trackers.end() || found->second != configuration)
+      throw differs(fmt::format("{} = {}, where the study has {}", member,
+                                found == model.trackers.end() ? "nothing" : found->second, configuration));
+  }
+}
+
+}  // namespace truebearing

@@ -54,11 +54,7 @@ void Interval::take(const SnapshotBlock& block) {
 void Interval::take_part(const SnapshotBlock& block) {
   live_count_ = 0;
   for (int m = 0; m < sensors_; ++m) {
-    bool alive = false;
-    for (int t = 0; t < block_snapshots_; ++t) {
-      const std::complex<double> value = block.snapshot(t)[static_cast<std::size_t>(m)];
-      alive |= is_finite(value) && value != 0.0;
-    }
+    const bool alive = block.is_live(m);
     live_[static_cast<std::size_t>(m)] = alive ? 1.0 : 0.0;
     live_count_ += alive ? 1 : 0;
   }

@@ -19,8 +19,8 @@ void Interval::take(const SnapshotBlock& block) {
   spacing_wavelengths_ = block.spacing_wavelengths;
   interval_s_ = block.interval_s;
   if (!is_as_before || re_.cols() < block_snapshots_) {
-    re_.setZero(padded(sensors_), block_snapshots_);
-    im_.setZero(padded(sensors_), block_snapshots_);
+    re_.setZero(padded_to_lanes(sensors_), block_snapshots_);
+    im_.setZero(padded_to_lanes(sensors_), block_snapshots_);
     live_.assign(static_cast<std::size_t>(sensors_), 1.0);
     numbers_.reserve(static_cast<std::size_t>(block_snapshots_));
   }

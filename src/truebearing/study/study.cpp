@@ -9,6 +9,7 @@
 #include "truebearing/correction/model_file.hpp"
 #include "truebearing/simulation/line_array_scenario.hpp"
 #include "truebearing/study/configuration_text.hpp"
+#include "truebearing/study/measured_check.hpp"
 #include "truebearing/study/track_scoring.hpp"
 #include "truebearing/study/tracker_registry.hpp"
 #include "truebearing/tracker/recorded_tracker.hpp"
@@ -202,7 +203,9 @@ void Study::check_trackers() {
     if (!spec.correction) {
       TableReader reader(spec.configuration, path_.string(), "trackers." + spec.name);
       for (const char* key : kStudyKeys) reader.node(key);  // valid too, for whoever misspelt one
-      check_replay(spec, *truebearing::make_tracker(spec.kind, reader));
+      const std::unique_ptr<Tracker> tracker = truebearing::make_tracker(spec.kind, reader);
+      check_replay(spec, *tracker);
+      check_measured(*tracker, path_.string() + ": trackers." + spec.name, *scenario_, sets_);
       continue;
     }
     for (const std::string& member : spec.correction->members())

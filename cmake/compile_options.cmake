@@ -15,6 +15,10 @@ function(truebearing_options target)
   endif()
 endfunction()
 
+# Of files of loops written for SIMD (core/simd_dispatch.hpp): floating-point traps and errno would keep the compiler from
+# it, and where the processor has fused multiply-adds they are wanted.
+set(TRUEBEARING_SIMD_OPTIONS -fopenmp-simd -fno-trapping-math -fno-math-errno -ffp-contract=fast)
+
 # truebearing_precompile(TARGET): the headers of others that nearly every file reads, parsed once.
 function(truebearing_precompile target)
   target_precompile_headers(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src/precompiled.hpp)

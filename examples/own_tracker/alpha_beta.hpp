@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "truebearing/io/table_reader.hpp"
@@ -30,6 +31,7 @@ class AlphaBetaTracker final : public truebearing::Tracker {
   void reset() override;
   std::unique_ptr<truebearing::Tracker> fresh() const override { return std::make_unique<AlphaBetaTracker>(options_); }
   const truebearing::StateSpace& space() const override { return truebearing::line_space(); }
+  std::optional<truebearing::Measured> measures() const override { return truebearing::Measured::position(1); }
   truebearing::RecordBlocks blocks() const override { return {.prediction = true, .innovation = true, .gain = true}; }
   truebearing::TrackerCounts counts() const override { return guard_.counts; }
 

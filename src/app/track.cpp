@@ -19,8 +19,8 @@
 #include "truebearing/recording/geographic_track.hpp"
 #include "truebearing/recording/recording_csv.hpp"
 #include "truebearing/recording/snapshot_log.hpp"
+#include "truebearing/study/measured_check.hpp"
 #include "truebearing/study/study.hpp"
-#include "truebearing/study/recorded_file.hpp"
 #include "truebearing/tracker/step_log.hpp"
 #include "truebearing/tracker/step_log_scenario.hpp"
 

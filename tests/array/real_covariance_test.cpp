@@ -52,7 +52,7 @@ TEST(RealCovariance, IsTheRealPartOfTheTransformedCovariance) {
     const RealInterval taken = real(interval);
     ASSERT_EQ(taken.count(), 1);
     const RealCovariance& block = taken.block(0);
-    ASSERT_EQ(block.R.rows(), Interval::padded(sensors));
+    ASSERT_EQ(block.R.rows(), padded_to_lanes(sensors));
     EXPECT_LT((block.R.topLeftCorner(sensors, sensors) - expected).norm(), 1e-12 * expected.norm()) << sensors;
     EXPECT_NEAR(block.R.norm(), expected.norm(), 1e-12 * expected.norm()) << "the padding of " << sensors;
     EXPECT_NEAR(block.trace, R.trace().real(), 1e-12 * block.trace);

@@ -226,6 +226,9 @@ TEST(SnapshotBlock, ASensorThatGivesNothingDoesNotSpoilTheOthers) {
   EXPECT_TRUE(is_usable(dead));
   EXPECT_FALSE(is_usable(holes)) << "two sensors give something, and never both";
   EXPECT_FALSE(is_usable(empty));
+  const std::vector<std::complex<double>> zeros{1.0, 0.0, 2.0, 3.0, nothing, 4.0};
+  EXPECT_TRUE(is_usable(zeros)) << "a sensor that gives zeros gives nothing";
+  EXPECT_FALSE(is_usable(std::vector<std::complex<double>>(6, 0.0)));
 }
 
 TEST_F(SnapshotLogTest, RepeatedIntervalIsDroppedAndCounted) {

@@ -70,6 +70,7 @@ class ArrayScenario final : public Scenario {
  public:
   Recording simulate(const RunKey&) const override { return testing::array_recording(); }
   const StateSpace& truth_space() const override { return angle_space(); }
+  std::optional<Measured> measured() const override { return Measured::snapshots(); }
 };
 
 TEST_F(RecordedFileTest, SnapshotLogIsReplayedWithItsTargets) {
@@ -135,9 +136,18 @@ TEST_F(RecordedFileTest, SetMayBeALogWithTruth) {
   folder_.write("log.csv", "time_s,position_m,position_sigma_m,truth_position_m\n0,1,10,0\n1,2,10,5\n");
   const Study study = Study::load(folder_.path() / "small.toml");
   EXPECT_EQ(study.evaluation_scenarios()[0].scenario->simulate({}).measurements.size(), 2u);
-  folder_.write("log.csv", "time_s,east_m,east_sigma_m,truth_east_m,truth_north_m\n0,1,10,0,0\n");
+  folder_.write("log.csv", "time_s,position_m,position_sigma_m,truth_position_m,truth_east_m\n0,1,10,0,0\n");
   EXPECT_THAT(error_message([&] { Study::load(folder_.path() / "small.toml").evaluation_scenarios(); }),
               AllOf(HasSubstr("sets.one"), HasSubstr("another truth")));
+}
+
+TEST_F(RecordedFileTest, LogOfSomethingElseIsRefused) {
+  testing::write_study(folder_, testing::kStudy);
+  const Study study = Study::load(folder_.path() / "small.toml");
+  const auto path = folder_.write("log.csv", "time_s,east_m,east_sigma_m,truth_east_m,truth_north_m\n0,1,10,0,0\n");
+  const auto recorded = study.recorded_scenario(path);
+  EXPECT_THAT(error_message([&] { recorded->simulate({}); }),
+              AllOf(HasSubstr("log.csv: measures east_m"), HasSubstr("position_m, which the study's trackers take")));
 }
 
 TEST_F(RecordedFileTest, TrackerThatReplaysNeedsLogs) {

@@ -21,7 +21,6 @@ using BearingTracker = FilterTrackerOf<Filter, BearingMotion, BearingSensor>;
 /// The guess from the measurements, velocities of 4 m/s per axis.
 inline RangePrior guessed_range() {
   RangePrior prior;
-  prior.range_m = std::nan("");
   prior.velocity_sigma_mps = 4.0;
   return prior;
 }

@@ -26,7 +26,7 @@ inline BearingsOnlyScenario bearings_family(int steps) {
   parameters.bearing_deg = Distribution(Distribution::Kind::uniform, {0.0, 360.0});
   parameters.sensor.sigma_rad = radians(1.0);
   parameters.guess = BearingsOnlyParameters::Guess{.range_sigma_m = 2000.0, .least_range_m = 1000.0};
-  parameters.closest_m = 1000.0;
+  parameters.accept.closest_m = 1000.0;
   return BearingsOnlyScenario(parameters);
 }
 

@@ -130,12 +130,28 @@ TEST(BearingsBatchTracker, MissingBearingsLeaveNoTrace) {
   EXPECT_EQ(a, b);
 }
 
+TEST(BearingsBatchTracker, BeliefInTheVelocityNeedsNoGuess) {
+  BearingsBatchOptions o = options();
+  o.prior = VelocityPrior{4.0};
+  BearingsBatchTracker believing(o), plain(options());
+  const auto last_x = [](BearingsBatchTracker& tracker, bool guessed) {
+    BoundedVector x;
+    for (Measurement m : run("bearings_only_family").measurements) {
+      if (!guessed) m.guess.reset();
+      if (const auto records = tracker.step(m); !records.empty()) x = records.front().x;
+    }
+    tracker.reset();
+    return x;
+  };
+  EXPECT_EQ(last_x(believing, true), last_x(believing, false));
+  EXPECT_NE(last_x(believing, true), last_x(plain, true));
+}
+
 TEST(BearingsBatchTracker, PriorNeedsTheGuessThatItIsTold) {
   BearingsBatchOptions o = options();
-  o.prior.emplace();
-  o.prior->range_m = std::nan("");
-  o.prior->range_sigma_m = std::nan("");
-  o.prior->velocity_sigma_mps = 4.0;
+  RangePrior of_the_guess;
+  of_the_guess.velocity_sigma_mps = 4.0;
+  o.prior = of_the_guess;
   BearingsBatchTracker tracker(o);
   Recording recording = run("bearings_only_family");
   std::size_t records = 0;

@@ -19,8 +19,8 @@ void Interval::take(const SnapshotBlock& block) {
   spacing_wavelengths_ = block.spacing_wavelengths;
   interval_s_ = block.interval_s;
   if (!is_as_before || re_.cols() < block_snapshots_) {
-    re_.setZero(padded(sensors_), block_snapshots_);
-    im_.setZero(padded(sensors_), block_snapshots_);
+    re_.setZero(padded_to_lanes(sensors_), block_snapshots_);
+    im_.setZero(padded_to_lanes(sensors_), block_snapshots_);
     live_.assign(static_cast<std::size_t>(sensors_), 1.0);
     numbers_.reserve(static_cast<std::size_t>(block_snapshots_));
   }
@@ -54,11 +54,7 @@ void Interval::take(const SnapshotBlock& block) {
 void Interval::take_part(const SnapshotBlock& block) {
   live_count_ = 0;
   for (int m = 0; m < sensors_; ++m) {
-    bool alive = false;
-    for (int t = 0; t < block_snapshots_; ++t) {
-      const std::complex<double> value = block.snapshot(t)[static_cast<std::size_t>(m)];
-      alive |= is_finite(value) && value != 0.0;
-    }
+    const bool alive = block.is_live(m);
     live_[static_cast<std::size_t>(m)] = alive ? 1.0 : 0.0;
     live_count_ += alive ? 1 : 0;
   }

@@ -1,6 +1,6 @@
 // What an estimator can use of one interval's snapshots. A sensor that gives zeros or NaN throughout is dead and left
 // out; of what is left, a snapshot with a value that is not finite is dropped. Real and imaginary parts are kept apart,
-// snapshot by snapshot, padded with zeros to a multiple of four sensors.
+// snapshot by snapshot, padded with zeros to whole lanes (simd_lanes.hpp).
 #pragma once
 
 #include <Eigen/Core>
@@ -14,8 +14,6 @@ namespace truebearing {
 
 class Interval {
  public:
-  static constexpr int padded(int sensors) { return (sensors + kLanes - 1) / kLanes * kLanes; }
-
   /// Allocates where the block is larger than any before.
   void take(const SnapshotBlock& block);
 

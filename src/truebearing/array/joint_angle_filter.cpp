@@ -4,148 +4,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "truebearing/array/simd_dispatch.hpp"
+#include "truebearing/array/joint_angle_kernels.hpp"
 
 namespace truebearing {
 namespace {
-
-// Small dense algebra. Inner loops run down whole columns, triangular or not: with their length known beforehand that
-// is faster than half of it. Matrices are column-major without gaps; above the diagonal of a root stands anything.
-
-// The first n columns of the lower triangular root of A (rows x rows), in place of the first n columns of A. False
-// where their square part is not positive definite.
-[[gnu::always_inline]] inline bool root_loops(int rows, int n, double* A) {
-  for (int j = 0; j < n; ++j) {
-    double* __restrict A_j = A + j * rows;
-    for (int k = 0; k < j; ++k) {
-      const double* A_k = A + k * rows;
-      const double factor = A_k[j];
-#pragma omp simd
-      for (int i = 0; i < rows; ++i) A_j[i] -= A_k[i] * factor;
-    }
-    if (!(A_j[j] > 0.0)) return false;
-    const double inverse = 1.0 / std::sqrt(A_j[j]);
-#pragma omp simd
-    for (int i = 0; i < rows; ++i) A_j[i] *= inverse;
-  }
-  return true;
-}
-[[gnu::always_inline]] inline void prior_root_loops(int targets, double* P, bool& is_positive_definite) {
-  with_count(
-      targets, [&](auto known) __attribute__((always_inline)) {
-        const int N = known > 0 ? int(known) : targets;
-        is_positive_definite = root_loops(3 * N, 2 * N, P);
-      });
-}
-TRUEBEARING_FOR_AVX2(prior_root, (int targets, double* P, bool& is_positive_definite),
-                     (targets, P, is_positive_definite))
-
-// x <- L^-1 x, of n columns of L that has `rows` rows
-[[gnu::always_inline]] inline void solve_lower_loops(int rows, int n, const double* L, double* x) {
-  for (int j = 0; j < n; ++j) {
-    const double* L_j = L + j * rows;
-    x[j] /= L_j[j];
-    const double x_j = x[j];
-#pragma omp simd
-    for (int i = j + 1; i < n; ++i) x[i] -= L_j[i] * x_j;
-  }
-}
-
-struct Model {
-  int N;
-  const double* Ut;  // [L; Y'] (3N x 2N)
-  const double* Lt;  // L' (2N x 2N)
-  const double *J, *g, *u;
-  double *JL, *B;              // (2N x 2N)
-  double *step, *change;       // (2N): of u, and of m
-  bool* is_positive_definite;  // B
-};
-
-// B = I + L' J L, its root, and from B step = L' g - u the step.
-[[gnu::always_inline]] inline void solve_model_of(int N, const Model& s) {
-  const int n = 2 * N, rows = 3 * N;
-  for (int j = 0; j < n; ++j) {
-    double* __restrict JL_j = s.JL + j * n, * __restrict B_j = s.B + j * n;  // so that sums stay in registers
-    const double* L_j = s.Ut + j * rows;
-    for (int i = 0; i < n; ++i) JL_j[i] = B_j[i] = 0.0;
-    B_j[j] = 1.0;
-    for (int k = j; k < n; ++k) {
-      const double *J_k = s.J + k * n, factor = L_j[k];
-#pragma omp simd
-      for (int i = 0; i < n; ++i) JL_j[i] += J_k[i] * factor;
-    }
-    for (int k = j; k < n; ++k) {
-      const double *Lt_k = s.Lt + k * n, factor = JL_j[k];
-#pragma omp simd
-      for (int i = 0; i < n; ++i) B_j[i] += Lt_k[i] * factor;
-    }
-    double right = -s.u[j];
-    for (int k = j; k < n; ++k) right += L_j[k] * s.g[k];
-    s.step[j] = right;
-  }
-  *s.is_positive_definite = root_loops(n, n, s.B);
-  if (!*s.is_positive_definite) return;
-  solve_lower_loops(n, n, s.B, s.step);
-  for (int j = n - 1; j >= 0; --j) {
-    const double* B_j = s.B + j * n;
-    double rest = s.step[j];
-    for (int i = j + 1; i < n; ++i) rest -= B_j[i] * s.step[i];
-    s.step[j] = rest / B_j[j];
-  }
-  for (int i = 0; i < n; ++i) s.change[i] = 0.0;
-  for (int j = 0; j < n; ++j) {
-    const double *L_j = s.Ut + j * rows, step = s.step[j];
-#pragma omp simd
-    for (int i = j; i < n; ++i) s.change[i] += L_j[i] * step;
-  }
-}
-[[gnu::always_inline]] inline void solve_model_loops(const Model& s) {
-  with_count(
-      s.N, [&](auto known) __attribute__((always_inline)) { solve_model_of(known > 0 ? int(known) : s.N, s); });
-}
-TRUEBEARING_FOR_AVX2(solve_model, (const Model& s), (s))
-
-// x = x0 + U' u,  P = [0 0; 0 P_rr - Y'Y] + Z'Z; Zt: U' on entry.
-struct Posterior {
-  int N;
-  const double *Ut, *B, *u, *P0;
-  double *Zt, *x, *P;
-};
-[[gnu::always_inline]] inline void take_posterior_of(int N, const Posterior& s) {
-  const int n = 2 * N, rows = 3 * N;
-  for (int j = 0; j < n; ++j) {  // Z' = U' B^-T
-    const double *B_j = s.B + j * n, *U_j = s.Ut + j * rows;
-    double* Z_j = s.Zt + j * rows;
-    const double inverse = 1.0 / B_j[j], u = s.u[j];
-#pragma omp simd
-    for (int i = 0; i < rows; ++i) {
-      s.x[i] += U_j[i] * u;
-      Z_j[i] *= inverse;
-    }
-    for (int k = j + 1; k < n; ++k) {
-      double *Z_k = s.Zt + k * rows, factor = B_j[k];
-#pragma omp simd
-      for (int i = 0; i < rows; ++i) Z_k[i] -= Z_j[i] * factor;
-    }
-  }
-  for (int j = 0; j < rows; ++j) {
-    double* P_j = s.P + j * rows;
-    for (int i = 0; i < rows; ++i) P_j[i] = j < n || i < n ? 0.0 : s.P0[j * rows + i];
-    for (int k = 0; k < n; ++k) {
-      const double *Z_k = s.Zt + k * rows, *U_k = s.Ut + k * rows;
-      const double z = Z_k[j], y = j < n ? 0.0 : U_k[j];
-#pragma omp simd
-      for (int i = 0; i < rows; ++i) P_j[i] += Z_k[i] * z - U_k[i] * y;
-    }
-  }
-  for (int j = 0; j < rows; ++j)
-    for (int i = 0; i < j; ++i) s.P[j * rows + i] = s.P[i * rows + j];
-}
-[[gnu::always_inline]] inline void take_posterior_loops(const Posterior& s) {
-  with_count(
-      s.N, [&](auto known) __attribute__((always_inline)) { take_posterior_of(known > 0 ? int(known) : s.N, s); });
-}
-TRUEBEARING_FOR_AVX2(take_posterior, (const Posterior& s), (s))
 
 // Of B = L L'.
 double log_determinant(const SignalMatrix& L) {
@@ -264,7 +126,7 @@ bool JointAngleUpdate::run(const JointAngleState& prior, const RealInterval& int
   const SignalVector m0 = prior.x.head(n), rate = prior.x.tail(N);
   Ut_ = prior.P.leftCols(n);
   bool is_positive_definite = false;
-  prior_root(N, Ut_.data(), is_positive_definite);
+  kernels::prior_root(N, Ut_.data(), is_positive_definite);
   if (!is_positive_definite) return false;
   for (int j = 1; j < n; ++j) Ut_.col(j).head(j).setZero();
   Lt_ = Ut_.topRows(n).transpose();
@@ -282,8 +144,8 @@ bool JointAngleUpdate::run(const JointAngleState& prior, const RealInterval& int
   for (int iteration = 0;; ++iteration) {
     if (!likelihood_.evaluate(interval, m_, options.moving ? &rate : nullptr, middle_s, options.noise_power))
       return false;
-    solve_model({N, Ut_.data(), Lt_.data(), likelihood_.information().data(), likelihood_.gradient().data(), u_.data(),
-                 JL_.data(), B_.data(), step_.data(), change_.data(), &is_positive_definite});
+    kernels::solve_model({N, Ut_.data(), Lt_.data(), likelihood_.information().data(), likelihood_.gradient().data(),
+                          u_.data(), JL_.data(), B_.data(), step_.data(), change_.data(), &is_positive_definite});
     if (!is_positive_definite) return false;
     if (iteration == options.iterations || step_.squaredNorm() < kConverged) break;
     // No further than the quadratic model can be believed.
@@ -305,7 +167,7 @@ bool JointAngleUpdate::run(const JointAngleState& prior, const RealInterval& int
   posterior.x = prior.x;
   posterior.P.resize(3 * N, 3 * N);
   Zt_ = Ut_;
-  take_posterior(
+  kernels::take_posterior(
       {N, Ut_.data(), B_.data(), u_.data(), prior.P.data(), Zt_.data(), posterior.x.data(), posterior.P.data()});
   return posterior.x.allFinite() && posterior.P.allFinite();
 }

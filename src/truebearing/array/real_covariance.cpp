@@ -3,40 +3,16 @@
 #include <cmath>
 #include <numbers>
 
-#include "truebearing/array/simd_dispatch.hpp"
+#include "truebearing/array/outer_product_kernel.hpp"
 #include "truebearing/array/simd_lanes.hpp"
 
 namespace truebearing {
-namespace {
-
-// X X^T, in squares of lanes: those below the diagonal and on it, and their mirrors.
-[[gnu::always_inline]] inline void outer_loops(int rows, int columns, const double* X, double scale, double* R) {
-  for (int j = 0; j < rows; j += kLanes)
-    for (int i = j; i < rows; i += kLanes) {
-      Lanes square[kLanes] = {}, x;
-      for (int c = 0; c < columns; ++c) {
-        const double* x_j = X + c * rows + j;
-        load(X + c * rows + i, x);
-#pragma GCC unroll 4
-        for (int k = 0; k < kLanes; ++k) square[k] += x * x_j[k];
-      }
-#pragma GCC unroll 4
-      for (int k = 0; k < kLanes; ++k) store(square[k] * scale, R + (j + k) * rows + i);
-    }
-  for (int j = 0; j < rows; ++j)
-    for (int i = 0; i < j; ++i) R[j * rows + i] = R[i * rows + j];
-}
-TRUEBEARING_FOR_AVX2(outer, (int rows, int columns, const double* X, double scale, double* R),
-                     (rows, columns, X, scale, R))
-
-}  // namespace
-
 void RealInterval::take(const Interval& interval, int blocks) {
   const int M = interval.sensors();
   const bool is_as_before = array_.pairs == M / 2 && array_.middle == (M % 2 == 1);
   array_.pairs = M / 2;
   array_.middle = M % 2 == 1;
-  array_.padded = Interval::padded(M);
+  array_.padded = padded_to_lanes(M);
   array_.spacing_wavelengths = interval.spacing_wavelengths();
   array_.live.setZero(array_.padded);
   const std::vector<double>& live = interval.live();
@@ -61,7 +37,8 @@ void RealInterval::take(const Interval& interval, int blocks) {
     block.R.resize(array_.padded, array_.padded);
     block.snapshots = end - begin;
     snapshots_ += block.snapshots;
-    outer(array_.padded, 2 * (end - begin), rows_.col(2 * begin).data(), 1.0 / block.snapshots, block.R.data());
+    kernels::outer_product(array_.padded, 2 * (end - begin), rows_.col(2 * begin).data(), 1.0 / block.snapshots,
+                           block.R.data());
     block.trace = block.R.trace();
     block.time_s = time_sum_s / block.snapshots;
     begin = end;

@@ -14,7 +14,7 @@
 
 namespace truebearing {
 
-/// Geometry of the transformed array, rows padded with zeros to a multiple of four.
+/// Geometry of the transformed array, rows padded with zeros to whole lanes (simd_lanes.hpp).
 struct RealArray {
   int pairs = 0;        ///< rows 0 .. pairs - 1 are the cosines, pairs .. 2 pairs - 1 the sines, then the middle
   bool middle = false;  ///< an odd number of sensors

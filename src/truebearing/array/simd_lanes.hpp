@@ -6,6 +6,10 @@
 namespace truebearing {
 
 inline constexpr int kLanes = 4;
+/// The least multiple of kLanes that holds so many.
+constexpr int padded_to_lanes(int count) {
+  return (count + kLanes - 1) / kLanes * kLanes;
+}
 using Lanes [[gnu::vector_size(kLanes * sizeof(double))]] = double;
 
 namespace detail {

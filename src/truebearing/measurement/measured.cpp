@@ -4,11 +4,6 @@
 #include <utility>
 
 namespace truebearing {
-namespace {
-
-constexpr const char* kStepLog = "step_log";
-
-}  // namespace
 
 Measured Measured::position(int dimensions) {
   if (dimensions == 1) return {"position", {"position_m"}};
@@ -32,7 +27,7 @@ Measured Measured::snapshots() {
 }
 
 Measured Measured::step_log(const StateSpace& space) {
-  return {kStepLog, space.components};
+  return {"step_log", space.components};
 }
 
 Measured Measured::of(std::vector<std::string> components) {
@@ -48,7 +43,7 @@ std::string describe(const Measured& measured) {
 std::optional<std::string> mismatch(const Measured& taken, const Measured& given, const std::string& giver) {
   if (taken == given) return std::nullopt;
   if (taken == Measured::bearing() && given == Measured::bearing_frequency()) return std::nullopt;
-  if (given.kind == kStepLog && taken.kind != kStepLog) return std::nullopt;
+  if (given.is_step_log() && !taken.is_step_log()) return std::nullopt;
   return fmt::format("measures {}, {} gives {}", describe(taken), giver, describe(given));
 }
 

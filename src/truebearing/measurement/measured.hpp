@@ -15,6 +15,8 @@ struct Measured {
   std::vector<std::string> components;  ///< of z, as Recording::measured: "east_m", "bearing_deg"
 
   bool operator==(const Measured&) const = default;
+  /// Its components are states then; what was measured beside them stands in the log alone.
+  bool is_step_log() const { return kind == "step_log"; }
 
   /// On a line (1 dimension) "position_m", in the plane (2) "east_m" and "north_m".
   static Measured position(int dimensions);
@@ -33,8 +35,8 @@ struct Measured {
 std::string describe(const Measured& measured);
 
 /// Why a tracker that takes `taken` cannot use what `giver` ("the scenario") gives, in words that follow the tracker's
-/// name; nothing where it can. A bearing may come with a frequency, which is left alone. What is measured beside the
-/// states of a step log stands in the log itself: it is taken for what is wanted.
+/// name; nothing where it can. A bearing may come with a frequency, which is left alone. What a step log measured
+/// is taken for what is wanted.
 std::optional<std::string> mismatch(const Measured& taken, const Measured& given, const std::string& giver);
 
 }  // namespace truebearing

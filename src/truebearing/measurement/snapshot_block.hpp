@@ -27,8 +27,7 @@ struct SnapshotBlock {
 
   /// Whether sensor m gave a number in snapshot t; whether all did.
   bool is_finite(int t, int m) const {
-    const std::complex<double> r =
-        values[static_cast<std::size_t>(t) * static_cast<std::size_t>(sensors) + static_cast<std::size_t>(m)];
+    const std::complex<double> r = snapshot(t)[static_cast<std::size_t>(m)];
     return std::isfinite(r.real()) && std::isfinite(r.imag());
   }
   bool is_finite(int t) const {
@@ -36,21 +35,23 @@ struct SnapshotBlock {
       if (!is_finite(t, m)) return false;
     return true;
   }
-  /// Whether there is a snapshot with a number from every sensor that gives one at all: a sensor that never does is
-  /// dead, and the others do without it.
+  /// Whether sensor m ever gives a number other than zero. One that does not is dead, and the others do without it.
+  bool is_live(int m) const {
+    for (int t = 0; t < snapshots(); ++t)
+      if (is_finite(t, m) && snapshot(t)[static_cast<std::size_t>(m)] != 0.0) return true;
+    return false;
+  }
+  /// Whether there is a snapshot with a number from every sensor that lives, and such a sensor.
   bool has_usable_snapshot() const {
-    int most = 0;  // numbers in one snapshot
-    std::vector<bool> gives(static_cast<std::size_t>(std::max(sensors, 0)), false);
-    for (int t = 0; t < snapshots(); ++t) {
-      int count = 0;
-      for (int m = 0; m < sensors; ++m) {
-        if (!is_finite(t, m)) continue;
-        gives[static_cast<std::size_t>(m)] = true;
-        ++count;
-      }
-      most = std::max(most, count);
-    }
-    return most > 0 && most == std::count(gives.begin(), gives.end(), true);
+    std::vector<int> live;
+    for (int m = 0; m < sensors; ++m)
+      if (is_live(m)) live.push_back(m);
+    const auto is_whole = [&](int t) {
+      return std::all_of(live.begin(), live.end(), [&](int m) { return is_finite(t, m); });
+    };
+    for (int t = 0; t < snapshots() && !live.empty(); ++t)
+      if (is_whole(t)) return true;
+    return false;
   }
 };
 

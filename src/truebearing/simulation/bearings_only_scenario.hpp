@@ -1,20 +1,16 @@
 // Bearings of a target from an own ship that manoeuvres: target-motion analysis. Vessels sail at constant speed with
-// turns (vessel.hpp); the target begins at a range and bearing from own ship, which begins at the origin. Noise is
-// Gaussian, with dropouts and outliers where asked for; while own ship turns, measurements may be missing.
-//
-// In passive sonar the target is a source (source.hpp) besides, whose frequency is heard with its Doppler shift
-// (bearing_frequency.hpp): z = [bearing, frequency], and the truth ends in the frequency that the source radiates.
-//
-// A family may accept some of its draws only: those whose target never comes too close, and those whose range or
-// position the measurements determine in time (its Cramer-Rao bound, as if the target kept its first velocity).
+// turns (vessel.hpp); the target begins at a range and bearing from own ship, which begins at the origin. In passive
+// sonar the target is a source (source.hpp) besides, whose frequency is heard too, and the truth ends in the frequency
+// that it radiates. A family may accept some of its draws only (accepted_encounters.hpp).
 #pragma once
 
 #include <memory>
 #include <optional>
 #include <utility>
 
-#include "truebearing/measurement/bearing_frequency.hpp"
+#include "truebearing/simulation/accepted_encounters.hpp"
 #include "truebearing/simulation/scenario.hpp"
+#include "truebearing/simulation/sonar.hpp"
 #include "truebearing/simulation/source.hpp"
 #include "truebearing/simulation/turn_phases.hpp"
 #include "truebearing/simulation/vessel.hpp"
@@ -29,18 +25,7 @@ struct BearingsOnlyParameters {
   Distribution range_m = 1.0;      ///< of the target at time 0
   Distribution bearing_deg = 0.0;  ///< of the target at time 0
 
-  struct Sensor {
-    double sigma_rad = 0.0;
-    double dropout_share = 0.0;    ///< probability that a measurement is missing
-    double outlier_share = 0.0;    ///< probability that a bearing's noise is
-    double outlier_factor = 1.0;   ///< that many times as large
-    bool masked_in_turns = false;  ///< is a measurement missing while own ship turns?
-    bool reported = true;          ///< does a measurement carry its standard deviations?
-    double frequency_sigma_hz = 0.0;
-    double frequency_dropout_share = 0.0;  ///< probability that the frequency alone is missing
-    double sound_mps = kSoundInWater_mps;  ///< speed of sound
-  } sensor;
-
+  Sonar sensor;
   std::optional<SourceParameters> source;  ///< whose frequency is measured; none: bearings only
   std::optional<TurnPhases> phases;        ///< of the target, that the recording tells apart
 
@@ -54,15 +39,7 @@ struct BearingsOnlyParameters {
   };
   std::optional<Guess> guess;
 
-  double closest_m = 0.0;                     ///< of accepted draws
-  std::optional<double> range_bound_percent;  ///< of accepted draws: bearings' bound at the end, of the range then
-  /// Of accepted draws: the root mean square of the position's error that the bound allows at a time, from all that is
-  /// measured until then of a source that keeps its first frequency.
-  struct PositionBound {
-    double most_m = 0.0;
-    double at_s = 0.0;
-  };
-  std::optional<PositionBound> position_bound;
+  AcceptedEncounters accept;
 
   const StateSpace& truth_space() const { return source ? plane_frequency_space() : plane_space(); }
   Measured measured() const { return source ? Measured::bearing_frequency() : Measured::bearing(); }
@@ -87,10 +64,7 @@ class BearingsOnlyScenario final : public Scenario {
   const BearingsOnlyParameters& parameters() const { return parameters_; }
 
  private:
-  struct Draw;
-  Draw draw(RandomStream& stream) const;
-  bool accepts(const Draw& draw) const;
-  bool determines_position(const Draw& draw) const;
+  Encounter draw(RandomStream& stream) const;
 
   BearingsOnlyParameters parameters_;
 };

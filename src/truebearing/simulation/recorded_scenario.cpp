@@ -73,11 +73,6 @@ RecordedScenario::RecordedScenario(std::vector<Recording> positions, const Recor
   }
 }
 
-bool RecordedScenario::reports_sigma() const {
-  const std::vector<Measurement>& measurements = tracks_.front().exact.measurements;
-  return std::any_of(measurements.begin(), measurements.end(), [](const Measurement& m) { return m.sigma.size() > 0; });
-}
-
 Recording RecordedScenario::simulate(const RunKey& key) const {
   RandomStream stream(key, StreamId::measurement);
   const Track& track = tracks_[static_cast<std::size_t>(key.run % tracks_.size())];

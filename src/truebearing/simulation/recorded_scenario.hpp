@@ -39,7 +39,6 @@ class RecordedScenario final : public Scenario {
   Recording simulate(const RunKey& key) const override;
   const StateSpace& truth_space() const override { return *tracks_.front().exact.truth_space; }
   std::optional<Measured> measured() const override { return Measured::of(tracks_.front().exact.measured); }
-  bool reports_sigma() const override;
 
  private:
   struct Track {

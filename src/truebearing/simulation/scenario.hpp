@@ -26,7 +26,7 @@ class Scenario {
   virtual const StateSpace& truth_space() const = 0;
   /// What the measurements of every run are; nothing where it does not say.
   virtual std::optional<Measured> measured() const { return std::nullopt; }
-  /// Whether measurements carry their standard deviations.
+  /// Whether it is a sensor that reports its standard deviations with every measurement.
   virtual bool reports_sigma() const { return false; }
   /// What whoever reads its results should know of it, as a line; mostly nothing.
   virtual std::string note() const { return {}; }

@@ -45,10 +45,9 @@ FrequencyChangeOptions read_changes(TableReader& table) {
   return options;
 }
 
-RangePrior read_prior(TableReader table) {
+std::variant<RangePrior, VelocityPrior> read_prior(TableReader table) {
   if (table.choice("kind", {"range", "velocity"}) == "range") return read_range_prior(std::move(table));
-  RangePrior prior;
-  prior.velocity_sigma_mps = table.number("velocity_sigma_mps", kPositive);
+  const VelocityPrior prior{table.number("velocity_sigma_mps", kPositive)};
   table.finish();
   return prior;
 }

@@ -27,7 +27,7 @@ RangePrior::Course read_course(TableReader table, bool guessed) {
 
 RangePrior read_range_prior(TableReader table) {
   table.choice("kind", {"range"});
-  RangePrior prior{kNaN, kNaN, {}, 0.0, {}};
+  RangePrior prior;
   const bool guessed = table.boolean_or("guess", false);
   if (!guessed) {
     prior.range_m = table.number("range_m", kPositive);

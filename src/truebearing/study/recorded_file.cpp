@@ -1,6 +1,5 @@
 #include "truebearing/study/recorded_file.hpp"
 
-#include <algorithm>
 #include <fmt/format.h>
 #include <utility>
 
@@ -8,6 +7,7 @@
 #include "truebearing/core/error.hpp"
 #include "truebearing/recording/recording_csv.hpp"
 #include "truebearing/recording/snapshot_log.hpp"
+#include "truebearing/study/measured_check.hpp"
 
 namespace truebearing {
 namespace {
@@ -49,13 +49,6 @@ RecordedSpec read_recorded_spec(TableReader table) {
   return spec;
 }
 
-void check_measured(const std::vector<std::string>& measured, const Scenario& scenario, const std::string& where) {
-  const std::vector<std::string> wanted = scenario.simulate({1, Role::evaluation, 0}).measured;
-  if (measured != wanted)
-    throw InputError(where, fmt::format("measures {}", fmt::join(measured, ", ")),
-                     fmt::format("{}, which the study's trackers take", fmt::join(wanted, ", ")));
-}
-
 RecordedFile::RecordedFile(std::filesystem::path file, std::optional<RecordedSpec> spec, const Scenario& trained_on,
                            std::filesystem::path study)
     : file_(std::move(file)), spec_(std::move(spec)), trained_on_(trained_on), study_(std::move(study)) {}
@@ -84,16 +77,17 @@ void RecordedFile::open() const {
     return;
   }
   if (!is_geographic_track(file_)) {
-    scenario_ = std::make_unique<RecordedScenario>(read_recording(file_));
+    Recording recording = read_recording(file_);
+    check_measured(recording.measured, trained_on_, file_.string());
+    scenario_ = std::make_unique<RecordedScenario>(std::move(recording));
     return;
   }
   if (!spec_)
     throw InputError(file_.string(), "holds positions, and the study does not say how they are measured",
                      "a table [recorded] with position_sigma_m in " + study_.string());
   RecordedSensor sensor = spec_->sensor;
-  check_measured(sensor.measured(), trained_on_, file_.string());
-  const std::vector<Measurement> like = trained_on_.simulate({1, Role::evaluation, 0}).measurements;
-  sensor.reported = std::any_of(like.begin(), like.end(), [](const Measurement& m) { return m.sigma.size() > 0; });
+  check_measured(sensor.measured().components, trained_on_, file_.string());
+  sensor.reported = trained_on_.reports_sigma();
   GeographicTracks tracks = read_geographic_tracks(file_, spec_->track);
   note_ = note_of(file_.string(), tracks);
   scenario_ = std::make_unique<RecordedScenario>(std::move(tracks.recordings), sensor);

@@ -11,7 +11,6 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "truebearing/io/table_reader.hpp"
 #include "truebearing/recording/geographic_track.hpp"
@@ -26,9 +25,6 @@ struct RecordedSpec {
 
 RecordedSpec read_recorded_spec(TableReader table);
 
-/// Throws InputError in the name of `where` unless these are the columns that the scenario measures.
-void check_measured(const std::vector<std::string>& measured, const Scenario& scenario, const std::string& where);
-
 class RecordedFile final : public Scenario {
  public:
   /// The file is read when it is first needed: a study is trained and applied without what it is compared on.
@@ -40,6 +36,8 @@ class RecordedFile final : public Scenario {
   /// These throw InputError where the file is absent or at fault, or holds positions and `spec` is empty.
   Recording simulate(const RunKey& key) const override { return opened().simulate(key); }
   const StateSpace& truth_space() const override { return opened().truth_space(); }
+  /// What the study's scenario measures: another file is refused as it is read.
+  std::optional<Measured> measured() const override { return trained_on_.measured(); }
   std::string note() const override;
 
  private:

@@ -3,6 +3,7 @@
 
 #include "truebearing/correction/feature_extractor.hpp"
 #include "truebearing/correction/model_file.hpp"
+#include "truebearing/study/measured_check.hpp"
 #include "truebearing/study/study.hpp"
 #include "truebearing/study/tracker_registry.hpp"
 #include "truebearing/tracker/recorded_tracker.hpp"
@@ -15,7 +16,9 @@ void Study::check_trackers() {
     if (!spec.correction) {
       TableReader reader(spec.configuration, path_.string(), "trackers." + spec.name);
       ask_for_study_keys(reader);
-      check_replay(spec, *truebearing::make_tracker(spec.kind, reader));
+      const std::unique_ptr<Tracker> tracker = truebearing::make_tracker(spec.kind, reader);
+      check_replay(spec, *tracker);
+      check_measured(*tracker, path_.string() + ": trackers." + spec.name, *scenario_, sets_);
       continue;
     }
     for (const std::string& member : spec.correction->design.members())

@@ -2,13 +2,14 @@
 
 #include <cmath>
 
+#include "truebearing/core/simd_dispatch.hpp"
 #include "truebearing/tma/arctangent.hpp"
 
 namespace truebearing {
 namespace {
 
-[[gnu::always_inline]] inline void sum_cartesian(const BearingArrays& in, const double* x, double origin_s,
-                                                 CartesianSums& out) {
+[[gnu::always_inline]] inline void sum_cartesian_loops(const BearingArrays& in, const double* x, double origin_s,
+                                                       CartesianSums& out) {
   const double x0 = x[0], y0 = x[1], vx = x[2], vy = x[3];
   double cost = 0, ra = 0, rb = 0, rat = 0, rbt = 0, aa = 0, ab = 0, bb = 0, aat = 0, abt = 0, bbt = 0, aatt = 0,
          abtt = 0, bbtt = 0;
@@ -39,9 +40,11 @@ namespace {
   }
   out = {0.5 * cost, ra, rb, rat, rbt, aa, ab, bb, aat, abt, bbt, aatt, abtt, bbtt};
 }
+TRUEBEARING_FOR_AVX2(sum_cartesian, (const BearingArrays& in, const double* x, double origin_s, CartesianSums& out),
+                     (in, x, origin_s, out))
 
-[[gnu::always_inline]] inline void sum_modified_polar(const BearingArrays& in, const double* y, double origin_s,
-                                                      double huber_sigmas, ModifiedPolarSums& out) {
+[[gnu::always_inline]] inline void sum_modified_polar_loops(const BearingArrays& in, const double* y, double origin_s,
+                                                            double huber_sigmas, ModifiedPolarSums& out) {
   const double sine = std::sin(y[0]), cosine = std::cos(y[0]), rate = y[1], closing = y[2], rho = y[3];
   double cost = 0, g0 = 0, g1 = 0, g2 = 0, g3 = 0, a00 = 0, a10 = 0, a11 = 0, a20 = 0, a21 = 0, a22 = 0, a30 = 0,
          a31 = 0, a32 = 0, a33 = 0;
@@ -80,9 +83,13 @@ namespace {
   }
   out = {0.5 * cost, {g0, g1, g2, g3}, {a00, a10, a11, a20, a21, a22, a30, a31, a32, a33}};
 }
+TRUEBEARING_FOR_AVX2(sum_modified_polar,
+                     (const BearingArrays& in, const double* y, double origin_s, double huber_sigmas,
+                      ModifiedPolarSums& out),
+                     (in, y, origin_s, huber_sigmas, out))
 
-[[gnu::always_inline]] inline void sum_frequencies(const FrequencyArrays& in, const double* y, double mean_hz,
-                                                   double sound_mps, FrequencySums& out) {
+[[gnu::always_inline]] inline void sum_frequencies_loops(const FrequencyArrays& in, const double* y, double mean_hz,
+                                                         double sound_mps, FrequencySums& out) {
   const double sine = std::sin(y[0]), cosine = std::cos(y[0]), rate = y[1], closing = y[2], rho = y[3];
   const double r = 1.0 / rho, rate_mps = r * rate, closing_mps = r * closing, slowness = 1.0 / sound_mps;
   double squares = 0, information = 0, product = 0, g0 = 0, g1 = 0, g2 = 0, g3 = 0, s0 = 0, s1 = 0, s2 = 0, s3 = 0,
@@ -130,56 +137,28 @@ namespace {
   out = {squares,          information,      product,
          {g0, g1, g2, g3}, {s0, s1, s2, s3}, {a00, a10, a11, a20, a21, a22, a30, a31, a32, a33}};
 }
-
-#if defined(__x86_64__) && defined(__GNUC__)
-const bool kHasFma = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-
-[[gnu::target("avx2,fma")]] void sum_cartesian_fma(const BearingArrays& in, const double* x, double origin_s,
-                                                   CartesianSums& out) {
-  sum_cartesian(in, x, origin_s, out);
-}
-[[gnu::target("avx2,fma")]] void sum_modified_polar_fma(const BearingArrays& in, const double* y, double origin_s,
-                                                        double huber_sigmas, ModifiedPolarSums& out) {
-  sum_modified_polar(in, y, origin_s, huber_sigmas, out);
-}
-[[gnu::target("avx2,fma")]] void sum_frequencies_fma(const FrequencyArrays& in, const double* y, double mean_hz,
-                                                     double sound_mps, FrequencySums& out) {
-  sum_frequencies(in, y, mean_hz, sound_mps, out);
-}
-#else
-constexpr bool kHasFma = false;
-constexpr auto sum_cartesian_fma = sum_cartesian;
-constexpr auto sum_modified_polar_fma = sum_modified_polar;
-constexpr auto sum_frequencies_fma = sum_frequencies;
-#endif
+TRUEBEARING_FOR_AVX2(sum_frequencies,
+                     (const FrequencyArrays& in, const double* y, double mean_hz, double sound_mps, FrequencySums& out),
+                     (in, y, mean_hz, sound_mps, out))
 
 }  // namespace
 
 CartesianSums cartesian_sums(const BearingArrays& bearings, const double* x, double origin_s) {
   CartesianSums sums;
-  if (kHasFma)
-    sum_cartesian_fma(bearings, x, origin_s, sums);
-  else
-    sum_cartesian(bearings, x, origin_s, sums);
+  sum_cartesian(bearings, x, origin_s, sums);
   return sums;
 }
 
 ModifiedPolarSums modified_polar_sums(const BearingArrays& bearings, const double* y, double origin_s,
                                       double huber_sigmas) {
   ModifiedPolarSums sums;
-  if (kHasFma)
-    sum_modified_polar_fma(bearings, y, origin_s, huber_sigmas, sums);
-  else
-    sum_modified_polar(bearings, y, origin_s, huber_sigmas, sums);
+  sum_modified_polar(bearings, y, origin_s, huber_sigmas, sums);
   return sums;
 }
 
 FrequencySums frequency_sums(const FrequencyArrays& frequencies, const double* y, double mean_hz, double sound_mps) {
   FrequencySums sums;
-  if (kHasFma)
-    sum_frequencies_fma(frequencies, y, mean_hz, sound_mps, sums);
-  else
-    sum_frequencies(frequencies, y, mean_hz, sound_mps, sums);
+  sum_frequencies(frequencies, y, mean_hz, sound_mps, sums);
   return sums;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <optional>
 
 #include "truebearing/measurement/measurement.hpp"
@@ -24,10 +25,15 @@ struct GaussianState {
   Eigen::Matrix4d P;
 };
 
+/// What is believed of the velocity alone.
+struct VelocityPrior {
+  double sigma_mps = 0.0;  ///< mean zero, per axis
+};
+
 struct RangePrior {
   /// Of the range, where the measurement carries no guess; NaN where it has to.
-  double range_m = 0.0;
-  double range_sigma_m = 0.0;
+  double range_m = std::numeric_limits<double>::quiet_NaN();
+  double range_sigma_m = std::numeric_limits<double>::quiet_NaN();
   /// Where ranges of a family lie, uniformly: the range is then what is left of the guess between these (a matched
   /// start).
   struct Interval {

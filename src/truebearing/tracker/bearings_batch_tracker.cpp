@@ -50,16 +50,21 @@ void BearingsBatchTracker::reset() {
 
 // The prior of this track, where guess and options make one.
 void BearingsBatchTracker::believe(const Measurement& first, double sigma_rad, const SensorState& sensor) {
-  const RangePrior& belief = *options_.prior;
-  const bool of_range = belief.range_m != 0.0;
-  if (of_range && !belief.suffices_with(guess_)) return;
-  const std::optional<TargetGuess> guess = of_range ? guess_ : std::nullopt;
-  const GaussianState state = belief.state(first.z[0], sigma_rad, sensor, guess);
-  prior_.emplace();
-  prior_->velocity_mps = state.x.tail<2>();
-  prior_->velocity_information = state.P.bottomRightCorner<2, 2>().llt().solve(Eigen::Matrix2d::Identity());
-  if (!of_range) return;
-  const TruncatedNormal range = belief.range(guess);
+  const auto believe_velocity = [&](const Eigen::Vector2d& mean_mps, const Eigen::Matrix2d& covariance) {
+    prior_.emplace();
+    prior_->velocity_mps = mean_mps;
+    prior_->velocity_information = covariance.llt().solve(Eigen::Matrix2d::Identity());
+  };
+  if (const auto* velocity = std::get_if<VelocityPrior>(&*options_.prior)) {
+    const double variance = velocity->sigma_mps * velocity->sigma_mps;
+    believe_velocity(Eigen::Vector2d::Zero(), variance * Eigen::Matrix2d::Identity());
+    return;
+  }
+  const RangePrior& belief = std::get<RangePrior>(*options_.prior);
+  if (!belief.suffices_with(guess_)) return;
+  const GaussianState state = belief.state(first.z[0], sigma_rad, sensor, guess_);
+  believe_velocity(state.x.tail<2>(), state.P.bottomRightCorner<2, 2>());
+  const TruncatedNormal range = belief.range(guess_);
   prior_->range = BatchPrior::Range{range.mean, range.sigma, sensor.position_m, first.time_s};
 }
 

@@ -23,9 +23,8 @@ namespace truebearing {
 
 struct BearingsBatchOptions {
   std::variant<TargetMotionBatchOptions, ChoOptions> method;
-  /// Maximum a posteriori instead of maximum likelihood; a range_m of 0: of the velocity only. Without a guess that
-  /// it needs nothing is solved.
-  std::optional<RangePrior> prior;
+  /// Maximum a posteriori instead of maximum likelihood. Without a guess that it needs nothing is solved.
+  std::optional<std::variant<RangePrior, VelocityPrior>> prior;
   double sigma_rad = 0.0;     ///< where a measurement carries none
   double sigma_factor = 1.0;  ///< of bearings and frequencies
   /// The use of frequencies, not with Cho's methods. Own ship's velocity has to come with each.

@@ -1,6 +1,7 @@
 // One loop nest compiled twice: for any processor, and for those with AVX2 and fused multiply-add, chosen at run time.
 //     TRUEBEARING_FOR_AVX2(name, (parameters), (arguments))
-// defines name(parameters), which calls the always-inline function name_loops(arguments) in one of the two.
+// defines name(parameters), which calls the always-inline function name_loops(arguments) in one of the two. The file
+// that it stands in is compiled with TRUEBEARING_SIMD_OPTIONS (cmake/compile_options.cmake).
 #pragma once
 
 #include <type_traits>
@@ -37,10 +38,10 @@ template <typename Body>
 
 #if defined(__x86_64__) && defined(__GNUC__)
 #define TRUEBEARING_FOR_AVX2(name, parameters, arguments)                                         \
-  [[gnu::target("avx2,fma")]] void name##_avx2 parameters {                                       \
+  [[gnu::target("avx2,fma")]] static void name##_avx2 parameters {                                \
     name##_loops arguments;                                                                       \
   }                                                                                               \
-  void name##_any parameters {                                                                    \
+  static void name##_any parameters {                                                             \
     name##_loops arguments;                                                                       \
   }                                                                                               \
   void name parameters {                                                                          \

@@ -1,10 +1,10 @@
 #include "truebearing/tracker/bearings_batch_tracker.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "truebearing/core/linear_algebra.hpp"
 #include "truebearing/tma/residual_checks.hpp"
 
 namespace truebearing {
@@ -57,7 +57,7 @@ void BearingsBatchTracker::believe(const Measurement& first, double sigma_rad, c
   const GaussianState state = belief.state(first.z[0], sigma_rad, sensor, guess);
   prior_.emplace();
   prior_->velocity_mps = state.x.tail<2>();
-  prior_->velocity_information = state.P.bottomRightCorner<2, 2>().llt().solve(Eigen::Matrix2d::Identity());
+  prior_->velocity_information = inverse_of_positive<2>(state.P.bottomRightCorner<2, 2>());
   if (!of_range) return;
   const TruncatedNormal range = belief.range(guess);
   prior_->range = BatchPrior::Range{range.mean, range.sigma, sensor.position_m, first.time_s};

@@ -1,6 +1,5 @@
 // truebearing tma LOG.csv: from bearings, frequencies where the log has them, and own ship's track to the target's
 // range, course and speed, and to the tone of its source.
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>

@@ -1,6 +1,5 @@
 #include "app/tma_answer.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -8,6 +7,7 @@
 
 #include "truebearing/core/angle.hpp"
 #include "truebearing/core/chi_square.hpp"
+#include "truebearing/core/linear_algebra.hpp"
 #include "truebearing/evaluation/target_motion.hpp"
 #include "truebearing/io/json_file.hpp"
 
@@ -60,11 +60,11 @@ struct Ellipse {
   double semi_major_m, semi_minor_m, orientation_deg;  // of the major axis, from North, in [0, 180)
 
   explicit Ellipse(const Eigen::Matrix4d& P) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(P.topLeftCorner<2, 2>());
+    const SymmetricModes<2> modes = symmetric_modes<2>(P.topLeftCorner<2, 2>());
     const double scale = std::sqrt(chi_square_quantile(0.95, 2.0));
-    semi_minor_m = scale * std::sqrt(std::max(eigen.eigenvalues()[0], 0.0));
-    semi_major_m = scale * std::sqrt(std::max(eigen.eigenvalues()[1], 0.0));
-    const Eigen::Vector2d axis = eigen.eigenvectors().col(1);
+    semi_minor_m = scale * std::sqrt(std::max(modes.values[0], 0.0));
+    semi_major_m = scale * std::sqrt(std::max(modes.values[1], 0.0));
+    const Eigen::Vector2d axis = modes.vectors.col(1);
     orientation_deg = std::fmod(compass_deg(std::atan2(axis.x(), axis.y())), 180.0);
   }
 };

@@ -1,15 +1,15 @@
 #include "truebearing/array/angle_information.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
+#include <array>
 #include <limits>
+
+#include "truebearing/core/linear_algebra.hpp"
 
 namespace truebearing {
 
 Eigen::MatrixXd AngleInformation::powers_unknown() const {
   // Least squares: J(l, l) is singular where two signals come from one angle, of which only the sum can be heard.
-  const Eigen::MatrixXd known = angle_power * powers.completeOrthogonalDecomposition().solve(angle_power.transpose());
+  const Eigen::MatrixXd known = angle_power * least_squares(powers, Eigen::MatrixXd(angle_power.transpose()));
   return angles - 0.5 * (known + known.transpose());
 }
 
@@ -17,11 +17,11 @@ Eigen::VectorXd AngleInformation::angle_variances_rad2() const {
   constexpr double kRounding = 1e-10;
   const Eigen::MatrixXd J = powers_unknown();
   const Eigen::VectorXd scale = angles.diagonal().array().rsqrt();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(scale.asDiagonal() * J * scale.asDiagonal());
+  const auto modes = symmetric_modes<Eigen::Dynamic>(scale.asDiagonal() * J * scale.asDiagonal());
   Eigen::VectorXd variances = Eigen::VectorXd::Zero(J.rows());
   for (Eigen::Index n = 0; n < J.rows(); ++n)
     for (Eigen::Index mode = 0; mode < J.rows(); ++mode) {
-      const double part = scale[n] * modes.eigenvectors()(n, mode), heard = modes.eigenvalues()[mode];
+      const double part = scale[n] * modes.vectors(n, mode), heard = modes.values[mode];
       if (heard > kRounding)
         variances[n] += part * part / heard;
       else if (part * part > kRounding * scale[n] * scale[n])
@@ -46,8 +46,9 @@ AngleInformation angle_information(const LineArray& array, const Eigen::VectorXd
     D = (hears.asDiagonal() * D).eval();
   }
   const Eigen::MatrixXcd R = A * snr.asDiagonal() * A.adjoint() + Eigen::MatrixXcd::Identity(M, M);
-  const Eigen::LLT<Eigen::MatrixXcd> inverse(R);
-  const Eigen::MatrixXcd RA = inverse.solve(A), RD = inverse.solve(D);
+  std::array<Eigen::MatrixXcd, 2> solved{A, D};
+  solve_positive_in_place(R, solved);
+  const auto& [RA, RD] = solved;
   const Eigen::MatrixXcd aRa = A.adjoint() * RA, dRa = D.adjoint() * RA, dRd = D.adjoint() * RD;
 
   // dR/dtheta_i = p_i (d_i a_i' + a_i d_i'),  dR/dl_i = p_i a_i a_i'

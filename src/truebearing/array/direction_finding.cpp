@@ -1,9 +1,9 @@
 #include "truebearing/array/direction_finding.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+
+#include "truebearing/core/linear_algebra.hpp"
 
 namespace truebearing {
 namespace {
@@ -72,8 +72,8 @@ std::vector<double> music_angles(const LineArray& array, const Eigen::MatrixXcd&
 std::vector<double> esprit_angles(const LineArray& array, const Eigen::MatrixXcd& E) {
   if (E.cols() == 0) return {};
   const Eigen::Index M = E.rows();
-  const Eigen::MatrixXcd rotation = E.topRows(M - 1).colPivHouseholderQr().solve(E.bottomRows(M - 1));
-  const Eigen::VectorXcd values = Eigen::ComplexEigenSolver<Eigen::MatrixXcd>(rotation, false).eigenvalues();
+  const Eigen::MatrixXcd rotation = least_squares(Eigen::MatrixXcd(E.topRows(M - 1)), E.bottomRows(M - 1));
+  const Eigen::VectorXcd values = eigenvalues(rotation);
   std::vector<double> angles;
   for (const std::complex<double> value : values)
     angles.push_back(angle_of(std::arg(value) / (2.0 * kPi * array.spacing_wavelengths)));

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "truebearing/core/linear_algebra.hpp"
+
 namespace truebearing {
 
 void sample_covariance(const Interval& interval, Eigen::MatrixXcd& R) {
@@ -17,8 +19,8 @@ void sample_covariance(const Interval& interval, Eigen::MatrixXcd& R) {
 }
 
 SignalSubspace signal_subspace(const Eigen::MatrixXcd& R, int N) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXcd> solver(R);
-  return {solver.eigenvectors().rightCols(N).rowwise().reverse(), solver.eigenvalues()};
+  const HermitianModes modes = hermitian_modes(R);
+  return {modes.vectors.rightCols(N).rowwise().reverse(), modes.values};
 }
 
 int source_count(const Eigen::VectorXd& eigenvalues, int snapshots, OrderCriterion criterion) {

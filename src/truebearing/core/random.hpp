@@ -5,8 +5,7 @@
 // the tuning, training, validation and evaluation draws overlap.
 #pragma once
 
-#include <Random123/philox.h>
-
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -59,17 +58,12 @@ class RandomStream {
   }
 
  private:
-  using Philox = r123::Philox4x64;
+  /// The next block of the stream (random.cpp, which alone sees the generator).
+  void refill();
 
-  void refill() {
-    block_ = Philox()(counter_, key_);
-    ++counter_[0];
-    next_ = 0;
-  }
-
-  Philox::key_type key_;
-  Philox::ctr_type counter_;
-  Philox::ctr_type block_{};
+  std::array<std::uint64_t, 2> key_;
+  std::array<std::uint64_t, 4> counter_;
+  std::array<std::uint64_t, 4> block_{};
   unsigned next_ = 4;
   bool has_spare_ = false;
   double spare_ = 0.0;

@@ -4,9 +4,9 @@
 // Van Trees 1968, sec. 2.4; Nardone, Lindgren and Gong 1984 for bearings.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
+#include "truebearing/core/linear_algebra.hpp"
 #include "truebearing/measurement/measurement_model.hpp"
 
 namespace truebearing {
@@ -18,7 +18,8 @@ Eigen::Matrix<typename Model::Scalar, Parameters, Parameters> fisher_information
     const Eigen::Matrix<typename Model::Scalar, Model::kStates, Parameters>& Phi) {
   const Eigen::Matrix<typename Model::Scalar, Model::kMeasurements, Parameters> G = model.H(x) * Phi;
   const Eigen::Matrix<typename Model::Scalar, Model::kMeasurements, Model::kMeasurements> R = model.R();
-  return G.transpose() * R.llt().solve(G);
+  const Eigen::Matrix<typename Model::Scalar, Model::kMeasurements, Parameters> weighted = solve_positive(R, G);
+  return G.transpose() * weighted;
 }
 
 }  // namespace truebearing

@@ -4,12 +4,10 @@
 // which is the recursion of Tichavsky, Muravchik and Nehorai 1998, equation (21), written so that neither J nor Q need
 // have an inverse: without a prior J begins at zero, and without process noise it is the information of Cramer and Rao.
 // With States Eigen::Dynamic, parameters that measurements turn out to depend on can join the state as they are met.
+// Compiled for States 2, 4 and Eigen::Dynamic (posterior_information.cpp).
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <optional>
 
 #include "truebearing/measurement/fisher_information.hpp"
@@ -27,7 +25,7 @@ class PosteriorInformation {
       : J_(Matrix::Zero(states, states)) {}
 
   /// Adds what is believed beforehand: a Gaussian of covariance P, positive definite.
-  void add_prior(const Matrix& P) { J_ += P.llt().solve(identity()); }
+  void add_prior(const Matrix& P);
 
   /// Adds information about the state that comes from elsewhere.
   void add(const Matrix& J) { J_ += J; }
@@ -38,13 +36,7 @@ class PosteriorInformation {
     J_.conservativeResizeLike(Matrix::Zero(n + 1, n + 1));
   }
 
-  void predict(const Matrix& F, const Matrix& Q) {
-    const Eigen::PartialPivLU<Matrix> transposed(F.transpose());
-    const Matrix half = transposed.solve(J_);                         // F^-T J
-    const Matrix M = transposed.solve(half.transpose()).transpose();  // (F^-T J) F^-1
-    J_ = Eigen::PartialPivLU<Matrix>(identity() + M * Q).solve(M);
-    J_ = (0.5 * (J_ + J_.transpose())).eval();
-  }
+  void predict(const Matrix& F, const Matrix& Q);
 
   /// One measurement of the true state x.
   template <MeasurementModel Model>
@@ -62,16 +54,7 @@ class PosteriorInformation {
 
   /// The bound J^-1, or nothing where the measurements do not determine the state: where J, scaled to ones on its
   /// diagonal, is singular but for rounding.
-  std::optional<Matrix> covariance() const {
-    constexpr double kRounding = 1e-13;
-    if (!((J_.diagonal().array() > 0.0).all())) return std::nullopt;
-    const State scale = J_.diagonal().array().rsqrt();
-    const Matrix scaled = scale.asDiagonal() * J_ * scale.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<Matrix> modes(scaled);
-    if (modes.eigenvalues()(0) < kRounding * modes.eigenvalues()(J_.rows() - 1)) return std::nullopt;
-    const Matrix P = scaled.llt().solve(identity());
-    return Matrix(scale.asDiagonal() * P * scale.asDiagonal());
-  }
+  std::optional<Matrix> covariance() const;
 
  private:
   auto identity() const { return Matrix::Identity(J_.rows(), J_.rows()); }

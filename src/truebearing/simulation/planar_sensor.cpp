@@ -1,9 +1,9 @@
 #include "truebearing/simulation/planar_sensor.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
 #include "truebearing/core/angle.hpp"
+#include "truebearing/core/linear_algebra.hpp"
 
 namespace truebearing {
 
@@ -39,7 +39,9 @@ Measurement PlanarSensor::measure(double time_s, const Eigen::Vector2d& position
   BoundedVector noise(sigma.size());
   for (double& value : noise) value = stream.normal();
   if (R_m2) {
-    noise = Eigen::LLT<Eigen::Matrix2d>(*R_m2).matrixL() * Eigen::Vector2d(noise);
+    Eigen::Matrix2d L;
+    cholesky(*R_m2, L);
+    noise = L * Eigen::Vector2d(noise);
     sigma = R_m2->diagonal().cwiseSqrt();
   } else {
     noise.array() *= sigma.array();
@@ -60,7 +62,8 @@ PlanarSensor read_planar_sensor(TableReader table, PlanarSensor::Output output) 
   } else if (output == PlanarSensor::Output::position && table.has("position_covariance_m2")) {
     const std::vector<double> R = table.numbers("position_covariance_m2", 4);
     sensor.R_m2 = Eigen::Map<const Eigen::Matrix2d>(R.data());
-    if (R[1] != R[2] || Eigen::LLT<Eigen::Matrix2d>(*sensor.R_m2).info() != Eigen::Success)
+    Eigen::Matrix2d L;
+    if (R[1] != R[2] || !cholesky(*sensor.R_m2, L))
       throw table.error("position_covariance_m2", "is no covariance", "a symmetric positive definite 2 x 2 matrix");
   } else {
     sensor.sigma_m = read_distribution(table, "position_sigma_m", kPositive);

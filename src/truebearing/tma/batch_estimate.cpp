@@ -1,8 +1,8 @@
 #include "truebearing/tma/batch_estimate.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "truebearing/core/linear_algebra.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
 
 namespace truebearing {
@@ -11,9 +11,9 @@ Eigen::Matrix4d covariance_of(const Eigen::Matrix4d& information) {
   constexpr double kLeast = 1e-12;
   const Eigen::Vector4d scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::Matrix4d scaled = scale.asDiagonal() * information * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(scaled);
-  const Eigen::Vector4d inverse = eigen.eigenvalues().cwiseMax(kLeast).cwiseInverse();
-  const Eigen::Matrix4d half = scale.asDiagonal() * eigen.eigenvectors() * inverse.cwiseSqrt().asDiagonal();
+  const SymmetricModes<4> modes = symmetric_modes(scaled);
+  const Eigen::Vector4d inverse = modes.values.cwiseMax(kLeast).cwiseInverse();
+  const Eigen::Matrix4d half = scale.asDiagonal() * modes.vectors * inverse.cwiseSqrt().asDiagonal();
   return half * half.transpose();
 }
 

@@ -1,8 +1,9 @@
 #include "truebearing/tma/cho_2015.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <cmath>
+
+#include "truebearing/core/linear_algebra.hpp"
 
 namespace truebearing {
 namespace {
@@ -37,7 +38,7 @@ Descent descend(const BearingWindow& window, const Eigen::Vector4d& start, const
     const Eigen::Vector4d D = marquardt ? Eigen::Vector4d(A.diagonal()) : Eigen::Vector4d::Ones();
     Eigen::Vector4d h;
     if (damped)  // Equation (10)
-      h = (A + Eigen::Matrix4d((mu * D).asDiagonal())).ldlt().solve(descent.at.gradient);
+      h = solve_semidefinite<4>(A + Eigen::Matrix4d((mu * D).asDiagonal()), descent.at.gradient);
     else  // Equation (9)
       h = gauss_newton_step(descent.at, options.inverse);
     const double cost = descent.at.cost, promised = 0.5 * h.dot(mu * D.cwiseProduct(h) + descent.at.gradient);

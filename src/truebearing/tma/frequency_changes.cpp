@@ -1,10 +1,10 @@
 #include "truebearing/tma/frequency_changes.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "truebearing/core/chi_square.hpp"
+#include "truebearing/core/linear_algebra.hpp"
 
 namespace truebearing {
 
@@ -100,7 +100,8 @@ bool FrequencyChangeBatch::merge(TargetMotionBatch& batch, const BearingWindow& 
 IntervalScore FrequencyChangeBatch::scan(const DopplerWindow& frequencies, const BatchEstimate& estimate) {
   constexpr double kRounding = 1e-6;
   constexpr std::size_t kMostPlaces = 400;
-  const Eigen::Matrix4d L = estimate.P.llt().matrixL();
+  Eigen::Matrix4d L;
+  cholesky(estimate.P, L);
   frequencies.sources(estimate.x, estimate.time_s, sources_);
   IntervalScore best;
   for (int level = 0; level < frequencies.levels(); ++level) {

@@ -7,12 +7,12 @@
 // A problem is a callable: problem(x) gives the NormalEquations<N> there, not finite where x makes no sense.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "truebearing/core/linear_algebra.hpp"
 #include "truebearing/tma/normal_equations.hpp"
 
 namespace truebearing {
@@ -67,7 +67,7 @@ Minimum<N> levenberg_marquardt(const Problem& problem, const Eigen::Matrix<doubl
         A(i, i) = 1.0;
         g[i] = 0.0;
       }
-    const Vector x = (best.x + A.llt().solve(g)).cwiseMax(options.lower);
+    const Vector x = (best.x + solve_positive<N>(A, g)).cwiseMax(options.lower);
     const Vector h = x - best.x;
     // What the model promises for the step that is taken: it may have been cut at a bound.
     const double promised = h.dot(best.at.gradient) - 0.5 * h.dot(best.at.A * h);

@@ -1,12 +1,12 @@
 #include "truebearing/tma/residual_checks.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <vector>
 
 #include "truebearing/core/chi_square.hpp"
+#include "truebearing/core/linear_algebra.hpp"
 
 namespace truebearing {
 namespace {
@@ -16,11 +16,11 @@ constexpr int kParameters = 4;
 
 // g' S^-1 g without the directions in which S is nothing but rounding: there a change would look like no change.
 double score(const Eigen::Vector2d& g, const Eigen::Matrix2d& S, double whole) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(S);
+  const SymmetricModes<2> modes = symmetric_modes(S);
   double sum = 0.0;
   for (int i = 0; i < 2; ++i) {
-    const double projected = eigen.eigenvectors().col(i).dot(g);
-    if (eigen.eigenvalues()[i] > 1e-9 * whole) sum += projected * projected / eigen.eigenvalues()[i];
+    const double projected = modes.vectors.col(i).dot(g);
+    if (modes.values[i] > 1e-9 * whole) sum += projected * projected / modes.values[i];
   }
   return sum;
 }

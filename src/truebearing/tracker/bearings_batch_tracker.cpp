@@ -1,10 +1,10 @@
 #include "truebearing/tracker/bearings_batch_tracker.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "truebearing/core/linear_algebra.hpp"
 #include "truebearing/tma/residual_checks.hpp"
 
 namespace truebearing {
@@ -53,7 +53,7 @@ void BearingsBatchTracker::believe(const Measurement& first, double sigma_rad, c
   const auto believe_velocity = [&](const Eigen::Vector2d& mean_mps, const Eigen::Matrix2d& covariance) {
     prior_.emplace();
     prior_->velocity_mps = mean_mps;
-    prior_->velocity_information = covariance.llt().solve(Eigen::Matrix2d::Identity());
+    prior_->velocity_information = inverse_of_positive<2>(covariance);
   };
   if (const auto* velocity = std::get_if<VelocityPrior>(&*options_.prior)) {
     const double variance = velocity->sigma_mps * velocity->sigma_mps;

@@ -19,13 +19,12 @@ using ::testing::HasSubstr;
 using testing::mean_margin;
 using testing::moments;
 using testing::variance_fits;
-using Output = PlanarSensor::Output;
 
 const RunKey kKey{1, Role::evaluation, 0};
 
 PlanarFlightParameters flight_past_a_site() {
   PlanarFlightParameters parameters;
-  parameters.sensor.output = Output::range;
+  parameters.sensor.output = &planar_output("range");
   parameters.period_s = 0.1;
   parameters.steps = 3000;
   parameters.flight.leg_s = 40.0;
@@ -58,7 +57,7 @@ TEST(PlanarFlightScenario, RangeIsTheNormOfThePlane) {
   PlanarFlightParameters parameters = flight_past_a_site();
   parameters.jitter = RecorderJitter{{0.5, 0.5}, 1.0};
   const Recording range = PlanarFlightScenario(parameters).simulate(kKey);
-  parameters.sensor.output = Output::position;
+  parameters.sensor.output = &planar_output("plane");
   const PlanarFlightScenario in_plane(parameters);
   const Recording plane = in_plane.simulate(kKey);
   EXPECT_EQ(plane.measured, (std::vector<std::string>{"east_m", "north_m"}));
@@ -74,8 +73,8 @@ TEST(PlanarFlightScenario, MeasurementErrorIsGaussianOnTheRecordedPosition) {
   PlanarFlightParameters parameters = flight_past_a_site();
   parameters.steps = 10'000;
   parameters.jitter = RecorderJitter{{0.5, 0.5}, 2.0};
-  for (const Output output : {Output::range, Output::position}) {
-    parameters.sensor.output = output;
+  for (const char* output : {"range", "plane"}) {
+    parameters.sensor.output = &planar_output(output);
     const Recording recording = PlanarFlightScenario(parameters).simulate(kKey);
     for (Eigen::Index axis = 0; axis < recording.measurements[0].z.size(); ++axis) {
       std::vector<double> errors;
@@ -89,7 +88,7 @@ TEST(PlanarFlightScenario, MeasurementErrorIsGaussianOnTheRecordedPosition) {
 
 TEST(PlanarFlightScenario, JitterMovesPositionsAndNotVelocities) {
   PlanarFlightParameters parameters = flight_past_a_site();
-  parameters.sensor.output = Output::position;
+  parameters.sensor.output = &planar_output("plane");
   parameters.flight.leg_s = 1e6;
   parameters.jitter = RecorderJitter{{1.0}, 0.0};
   const Recording smooth = PlanarFlightScenario(parameters).simulate(kKey);
@@ -130,16 +129,16 @@ TEST(PlanarFlightScenario, SigmaIsReportedWhereAsked) {
   PlanarFlightParameters parameters = flight_past_a_site();
   EXPECT_EQ(PlanarFlightScenario(parameters).simulate(kKey).measurements[0].sigma.size(), 0);
   parameters.sensor.reported = true;
-  parameters.sensor.output = Output::position;
+  parameters.sensor.output = &planar_output("plane");
   EXPECT_EQ(PlanarFlightScenario(parameters).simulate(kKey).measurements[0].sigma, Eigen::Vector2d(150.0, 150.0));
 }
 
 TEST(PlanarFlightScenario, SiteAtRangeIsThatFarAtThatStep) {
   PlanarFlightParameters parameters = flight_past_a_site();
   parameters.steps = 100;
-  parameters.sensor.output = Output::range_bearing;
+  parameters.sensor.output = &planar_output("range_bearing");
   parameters.sensor.sigma_m = 50.0;
-  parameters.sensor.bearing_sigma_rad = 0.005;
+  parameters.sensor.further_sigma = BoundedVector::Constant(1, 0.005);
   parameters.site = SiteAtRange{Distribution(Distribution::Kind::uniform, {8000.0, 30000.0}), 60};
   const PlanarFlightScenario scenario(parameters);
   for (std::uint64_t run = 0; run < 50; ++run) {
@@ -157,7 +156,7 @@ TEST(PlanarFlightScenario, SiteAtRangeIsThatFarAtThatStep) {
 TEST(PlanarFlightScenario, OutliersAreAsRareAndAsLargeAsAsked) {
   PlanarFlightParameters parameters = flight_past_a_site();
   parameters.steps = 20000;
-  parameters.sensor.output = Output::position;
+  parameters.sensor.output = &planar_output("plane");
   parameters.sensor.sigma_m = 10.0;
   parameters.sensor.outlier_share = 0.03;
   parameters.sensor.outlier_factor = 10.0;

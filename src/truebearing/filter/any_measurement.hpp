@@ -144,6 +144,7 @@ struct PositionOn {
 
   Vector h(const State& x) const { return x.template head<M>(); }
   Jacobian H(const State&) const { return Jacobian::Identity(); }
+  Jacobian modified_gain(const Vector&, const State&) const { return Jacobian::Identity(); }
   const Covariance& R() const { return covariance; }
   Vector residual(const Vector& a, const Vector& b) const { return a - b; }
 };

@@ -2,8 +2,8 @@
 
 namespace truebearing {
 
-TRUEBEARING_EACH_LENGTH(template class, TRUEBEARING_MODIFIED_GAIN_STATE);
-TRUEBEARING_EACH_LENGTH(template class, TRUEBEARING_MODIFIED_GAIN_GROUP);
+TRUEBEARING_EACH_PLANE_LENGTH(template class, TRUEBEARING_MODIFIED_GAIN_STATE);
+TRUEBEARING_EACH_PLANE_LENGTH(template class, TRUEBEARING_MODIFIED_GAIN_GROUP);
 template class FilterState<LogPolarFilter<>>;
 template class FilterGroupOf<LogPolarFilter<>>;
 

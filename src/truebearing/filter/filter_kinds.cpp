@@ -18,9 +18,9 @@ template <int N>
 using ModifiedGain = ModifiedGainFilter<N>;
 
 // make(std::integral_constant<int, states>()), nullptr where nothing is compiled for that many.
-template <typename Made, typename Make>
+template <int kLeast, typename Made, typename Make>
 std::unique_ptr<Made> by_length(int states, const Make& make) {
-  constexpr int kLeast = 2, kLengths = 6;
+  constexpr int kLengths = 8 - kLeast;
   std::unique_ptr<Made> made;
   [&]<int... I>(std::integer_sequence<int, I...>) {
     ((states == kLeast + I ? void(made = make(std::integral_constant<int, kLeast + I>())) : void()), ...);
@@ -34,10 +34,10 @@ std::unique_ptr<TrackedState> one(const std::shared_ptr<const AnyMotion>& motion
   return std::make_unique<FilterState<Filter>>(std::static_pointer_cast<const SizedMotion<Filter::kStates>>(motion));
 }
 
-template <template <int> typename Filter>
+template <template <int> typename Filter, int kLeast = 2>
 std::unique_ptr<TrackedState> state(const std::shared_ptr<const AnyMotion>& motion) {
-  return by_length<TrackedState>(motion->states(),
-                                 [&]<int N>(std::integral_constant<int, N>) { return one<Filter<N>>(motion); });
+  return by_length<kLeast, TrackedState>(
+      motion->states(), [&]<int N>(std::integral_constant<int, N>) { return one<Filter<N>>(motion); });
 }
 
 template <typename Filter>
@@ -48,9 +48,9 @@ std::unique_ptr<FilterGroup> several(const AnyMotions& motions, const std::vecto
   return std::make_unique<FilterGroupOf<Filter>>(std::move(sized), motion_of);
 }
 
-template <template <int> typename Filter>
+template <template <int> typename Filter, int kLeast = 2>
 std::unique_ptr<FilterGroup> group(const AnyMotions& motions, const std::vector<std::size_t>& motion_of) {
-  return by_length<FilterGroup>(motions.front()->states(), [&]<int N>(std::integral_constant<int, N>) {
+  return by_length<kLeast, FilterGroup>(motions.front()->states(), [&]<int N>(std::integral_constant<int, N>) {
     return several<Filter<N>>(motions, motion_of);
   });
 }
@@ -68,7 +68,7 @@ std::unique_ptr<TrackedState> make_filter_state(FilterKind kind, const std::shar
     case FilterKind::unscented:
       return state<Unscented>(motion);
     case FilterKind::modified_gain:
-      return state<ModifiedGain>(motion);
+      return state<ModifiedGain, 4>(motion);
     case FilterKind::log_polar:
       return motion->states() == 4 ? one<LogPolarFilter<>>(motion) : nullptr;
   }
@@ -83,7 +83,7 @@ std::unique_ptr<FilterGroup> make_filter_group(FilterKind kind, const AnyMotions
     case FilterKind::unscented:
       return group<Unscented>(motions, motion_of);
     case FilterKind::modified_gain:
-      return group<ModifiedGain>(motions, motion_of);
+      return group<ModifiedGain, 4>(motions, motion_of);
     case FilterKind::log_polar:
       return motions.front()->states() == 4 ? several<LogPolarFilter<>>(motions, motion_of) : nullptr;
     case FilterKind::square_root:

@@ -22,8 +22,8 @@ enum class FilterKind {
   square_root,   ///< the same, carried as a square root
   conventional,  ///< the same, P - K S K'
   unscented,
-  modified_gain,
-  log_polar  ///< of bearings alone, four states in the plane
+  modified_gain,  ///< in the plane
+  log_polar       ///< of bearings alone, four states in the plane
 };
 
 using AnyMotions = std::vector<std::shared_ptr<const AnyMotion>>;
@@ -36,14 +36,16 @@ std::unique_ptr<TrackedState> make_filter_state(FilterKind kind, const std::shar
 std::unique_ptr<FilterGroup> make_filter_group(FilterKind kind, const AnyMotions& motions,
                                                const std::vector<std::size_t>& motion_of);
 
-// EACH(WORDS, TYPE) is WORDS TYPE<2>; ... WORDS TYPE<7>;
+// WORDS TYPE(n) for each length of a state: on the line 2 and 3, in the plane 4 to 7.
+#define TRUEBEARING_EACH_PLANE_LENGTH(WORDS, TYPE) \
+  WORDS TYPE(4);                                   \
+  WORDS TYPE(5);                                   \
+  WORDS TYPE(6);                                   \
+  WORDS TYPE(7)
 #define TRUEBEARING_EACH_LENGTH(WORDS, TYPE) \
   WORDS TYPE(2);                             \
   WORDS TYPE(3);                             \
-  WORDS TYPE(4);                             \
-  WORDS TYPE(5);                             \
-  WORDS TYPE(6);                             \
-  WORDS TYPE(7)
+  TRUEBEARING_EACH_PLANE_LENGTH(WORDS, TYPE)
 #define TRUEBEARING_KALMAN_STATE(N) FilterState<KalmanFilter<N>>
 #define TRUEBEARING_SQUARE_ROOT_STATE(N) FilterState<KalmanFilter<N, SquareRoot>>
 #define TRUEBEARING_CONVENTIONAL_STATE(N) FilterState<KalmanFilter<N, Conventional>>
@@ -57,10 +59,10 @@ TRUEBEARING_EACH_LENGTH(extern template class, TRUEBEARING_KALMAN_STATE);
 TRUEBEARING_EACH_LENGTH(extern template class, TRUEBEARING_SQUARE_ROOT_STATE);
 TRUEBEARING_EACH_LENGTH(extern template class, TRUEBEARING_CONVENTIONAL_STATE);
 TRUEBEARING_EACH_LENGTH(extern template class, TRUEBEARING_UNSCENTED_STATE);
-TRUEBEARING_EACH_LENGTH(extern template class, TRUEBEARING_MODIFIED_GAIN_STATE);
+TRUEBEARING_EACH_PLANE_LENGTH(extern template class, TRUEBEARING_MODIFIED_GAIN_STATE);
 TRUEBEARING_EACH_LENGTH(extern template class, TRUEBEARING_KALMAN_GROUP);
 TRUEBEARING_EACH_LENGTH(extern template class, TRUEBEARING_UNSCENTED_GROUP);
-TRUEBEARING_EACH_LENGTH(extern template class, TRUEBEARING_MODIFIED_GAIN_GROUP);
+TRUEBEARING_EACH_PLANE_LENGTH(extern template class, TRUEBEARING_MODIFIED_GAIN_GROUP);
 extern template class FilterState<LogPolarFilter<>>;
 extern template class FilterGroupOf<LogPolarFilter<>>;
 

@@ -9,7 +9,6 @@
 namespace truebearing {
 namespace {
 
-using Output = PlanarSensor::Output;
 
 // Where the site is, for a track flown (4 x steps) from the origin.
 struct PlaceSite {
@@ -43,7 +42,7 @@ Eigen::Vector2d range_truth(const Eigen::Vector2d& recorded_m, const Eigen::Vect
 }  // namespace
 
 const StateSpace& PlanarFlightScenario::truth_space() const {
-  return parameters_.sensor.output == Output::range ? line_space() : plane_space();
+  return parameters_.sensor.is_range() ? line_space() : plane_space();
 }
 
 Recording PlanarFlightScenario::simulate(const RunKey& key) const {
@@ -69,13 +68,15 @@ Recording PlanarFlightScenario::simulate(const RunKey& key) const {
   recording.truth.resize(1);
   if (parameters_.quiet_after_s) recording.phases = {"manoeuvre", "quiet"};
   for (int k = 0; k < parameters_.steps; ++k) {
+    Eigen::Vector4d state;
+    state << recorded.col(k), flown.col(k).tail<2>();
     recording.measurements.push_back(
-        parameters_.sensor.measure((k + 1) * parameters_.period_s, recorded.col(k), sigma_m, measurement));
+        parameters_.sensor.measure((k + 1) * parameters_.period_s, state, sigma_m, measurement));
     BoundedVector x(truth_space().size());
-    if (parameters_.sensor.output == Output::range)
+    if (parameters_.sensor.is_range())
       x = range_truth(recorded.col(k), flown.col(k));
     else
-      x << recorded.col(k), flown.col(k).tail<2>();
+      x = state;
     recording.truth[0].x.push_back(std::move(x));
     if (parameters_.quiet_after_s)
       recording.truth[0].phase.push_back(whole.since_manoeuvre_s[margin + k] > *parameters_.quiet_after_s ? 1 : 0);
@@ -140,16 +141,14 @@ RecorderJitter read_jitter(TableReader jitter) {
 
 std::unique_ptr<Scenario> read_planar_flight_scenario(TableReader& table) {
   PlanarFlightParameters parameters;
-  const std::string output = table.choice("output", {"range", "plane", "range_bearing"});
+  const std::string output = table.choice("output", planar_outputs());
   parameters.period_s = table.number("period_s", {0.0, 3600.0, true});
   parameters.steps = static_cast<int>(table.integer("steps", 1, 100'000));
   if (table.has("quiet_after_s")) parameters.quiet_after_s = table.number("quiet_after_s", kNonNegative);
   parameters.flight = read_flight(table.table("flight"));
   parameters.site = read_site(table.table_if_present("site"), parameters.steps);
   if (std::optional<TableReader> jitter = table.table_if_present("jitter")) parameters.jitter = read_jitter(*jitter);
-  parameters.sensor = read_planar_sensor(table.table("sensor"), output == "range"   ? Output::range
-                                                                : output == "plane" ? Output::position
-                                                                                    : Output::range_bearing);
+  parameters.sensor = read_planar_sensor(table.table("sensor"), output);
   return std::make_unique<PlanarFlightScenario>(std::move(parameters));
 }
 

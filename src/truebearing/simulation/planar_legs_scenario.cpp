@@ -44,7 +44,7 @@ Recording PlanarLegsScenario::simulate(const RunKey& key) const {
     for (; k * parameters_.period_s <= end_s + kRounding_s; ++k) {
       const double time_s = k * parameters_.period_s;
       const Eigen::Vector4d state = flown(leg, x, std::max(time_s - begin_s, 0.0));
-      recording.measurements.push_back(parameters_.sensor.measure(time_s, state.head<2>(), sigma_m, measurement));
+      recording.measurements.push_back(parameters_.sensor.measure(time_s, state, sigma_m, measurement));
       recording.truth[0].x.emplace_back(state);
       if (!parameters_.phases.empty()) recording.truth[0].phase.push_back(leg.phase);
     }
@@ -56,7 +56,9 @@ Recording PlanarLegsScenario::simulate(const RunKey& key) const {
 
 std::unique_ptr<Scenario> read_planar_legs_scenario(TableReader& table) {
   PlanarLegsParameters parameters;
-  const std::string output = table.choice_or("output", {"plane", "range_bearing"}, "plane");
+  std::vector<std::string> outputs = planar_outputs();
+  outputs.erase(std::remove(outputs.begin(), outputs.end(), "range"), outputs.end());  // the truth is in the plane
+  const std::string output = table.choice_or("output", outputs, "plane");
   parameters.period_s = table.number("period_s", {0.0, 3600.0, true});
   TableReader target = table.table("target");
   const std::vector<double> position_m = target.numbers("position_m", 2);
@@ -84,8 +86,7 @@ std::unique_ptr<Scenario> read_planar_legs_scenario(TableReader& table) {
     leg.finish();
   }
   if (parameters.legs.empty()) throw table.error("legs", "is missing or empty", "an array of tables, [[legs]]");
-  parameters.sensor = read_planar_sensor(
-      table.table("sensor"), output == "plane" ? PlanarSensor::Output::position : PlanarSensor::Output::range_bearing);
+  parameters.sensor = read_planar_sensor(table.table("sensor"), output);
   return std::make_unique<PlanarLegsScenario>(std::move(parameters));
 }
 

@@ -1,41 +1,59 @@
 #include "truebearing/simulation/planar_sensor.hpp"
 
 #include <cmath>
+#include <stdexcept>
 
 #include "truebearing/core/angle.hpp"
 #include "truebearing/core/linear_algebra.hpp"
 
 namespace truebearing {
 
-Measured PlanarSensor::measured() const {
-  switch (output) {
-    case Output::range:
-      return Measured::position(1);
-    case Output::range_bearing:
-      return Measured::range_bearing();
-    case Output::position:
-      break;
-  }
-  return Measured::position(2);
+namespace {
+
+double bearing_of(const Eigen::Vector4d& state) { return std::atan2(state.x(), state.y()); }
+
+const std::vector<PlanarOutput>& table() {
+  static const std::vector<PlanarOutput> the_table{
+      {"plane", Measured::position(2), [](const Eigen::Vector4d& state) -> BoundedVector { return state.head<2>(); }, {}},
+      {"range", Measured::position(1),
+       [](const Eigen::Vector4d& state) -> BoundedVector { return BoundedVector::Constant(1, state.head<2>().norm()); },
+       {}},
+      {"range_bearing", Measured::range_bearing(),
+       [](const Eigen::Vector4d& state) -> BoundedVector {
+         return Eigen::Vector2d(state.head<2>().norm(), bearing_of(state));
+       },
+       {"bearing_sigma_deg"}, 1},
+  };
+  return the_table;
 }
 
-Measurement PlanarSensor::measure(double time_s, const Eigen::Vector2d& position_m, double drawn_sigma_m,
+// In radians or as it stands, by the unit in the key's name.
+double read_sigma(TableReader& sensor, const std::string& key) {
+  if (key.ends_with("_deg")) return radians(sensor.number(key, {0.0, 90.0, true}));
+  return sensor.number(key, kPositive);
+}
+
+}  // namespace
+
+const PlanarOutput& planar_output(const std::string& name) {
+  for (const PlanarOutput& output : table())
+    if (output.name == name) return output;
+  throw std::out_of_range("no output of a sensor in the plane: " + name);
+}
+
+std::vector<std::string> planar_outputs() {
+  std::vector<std::string> names;
+  for (const PlanarOutput& output : table()) names.push_back(output.name);
+  return names;
+}
+
+Measurement PlanarSensor::measure(double time_s, const Eigen::Vector4d& state, double drawn_sigma_m,
                                   RandomStream& stream) const {
   Measurement taken;
   taken.time_s = time_s;
-  BoundedVector sigma = BoundedVector::Constant(output == Output::range ? 1 : 2, drawn_sigma_m);
-  switch (output) {
-    case Output::position:
-      taken.z = position_m;
-      break;
-    case Output::range:
-      taken.z = BoundedVector::Constant(1, position_m.norm());
-      break;
-    case Output::range_bearing:
-      taken.z = Eigen::Vector2d(position_m.norm(), std::atan2(position_m.x(), position_m.y()));
-      sigma[1] = bearing_sigma_rad;
-      break;
-  }
+  taken.z = output->h(state);
+  BoundedVector sigma = BoundedVector::Constant(taken.z.size(), drawn_sigma_m);
+  sigma.tail(further_sigma.size()) = further_sigma;
   BoundedVector noise(sigma.size());
   for (double& value : noise) value = stream.normal();
   if (R_m2) {
@@ -48,18 +66,21 @@ Measurement PlanarSensor::measure(double time_s, const Eigen::Vector2d& position
   }
   if (outlier_share > 0.0 && stream.uniform() < outlier_share) noise *= outlier_factor;
   taken.z += noise;
-  if (output == Output::range_bearing) taken.z[1] = wrap_pi(taken.z[1]);
+  if (output->bearing >= 0) taken.z[output->bearing] = wrap_pi(taken.z[output->bearing]);
   if (reported) taken.sigma = sigma;
   return taken;
 }
 
-PlanarSensor read_planar_sensor(TableReader table, PlanarSensor::Output output) {
+PlanarSensor read_planar_sensor(TableReader table, const std::string& output) {
   PlanarSensor sensor;
-  sensor.output = output;
-  if (output == PlanarSensor::Output::range_bearing) {
+  sensor.output = &planar_output(output);
+  const std::vector<std::string>& further = sensor.output->sigma_keys;
+  sensor.further_sigma.resize(static_cast<Eigen::Index>(further.size()));
+  if (!further.empty()) {
     sensor.sigma_m = read_distribution(table, "range_sigma_m", kPositive);
-    sensor.bearing_sigma_rad = radians(table.number("bearing_sigma_deg", {0.0, 90.0, true}));
-  } else if (output == PlanarSensor::Output::position && table.has("position_covariance_m2")) {
+    for (std::size_t i = 0; i < further.size(); ++i)
+      sensor.further_sigma[static_cast<Eigen::Index>(i)] = read_sigma(table, further[i]);
+  } else if (output == "plane" && table.has("position_covariance_m2")) {
     const std::vector<double> R = table.numbers("position_covariance_m2", 4);
     sensor.R_m2 = Eigen::Map<const Eigen::Matrix2d>(R.data());
     Eigen::Matrix2d L;

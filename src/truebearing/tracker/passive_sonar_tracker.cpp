@@ -152,7 +152,7 @@ std::span<const StepRecord> PassiveSonarTracker::follow(const Measurement& measu
   remember(records.front());
   if (source == Source::doubtful) return records;
   record_ = records.front();
-  if (const auto begun = options_.sensor.start(plane_, measurement)) {
+  if (const auto begun = options_.sensor.believe(plane_, measurement)) {
     filter_->take_over(measurement.time_s, begun->x, begun->P);
     events_.push_back({TrackEvent::Kind::source_changed, doubtful_->time_s, begun->x[4]});
     const Eigen::Index n = record_.x.size();

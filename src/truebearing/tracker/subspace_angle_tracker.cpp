@@ -69,12 +69,12 @@ bool SubspaceAngleTracker::begin(double time_s) {
     first_ = std::move(now);
     return false;
   }
-  using Variance = Eigen::Matrix<double, 1, 1>;
-  const Variance R(options_.sigma_rad * options_.sigma_rad);
+  const auto fix = [&](const Start& at, int n) -> PositionFix {
+    return {BoundedVector::Constant(1, at.angles[static_cast<std::size_t>(n)]),
+            BoundedMatrix::Constant(1, 1, options_.sigma_rad * options_.sigma_rad)};
+  };
   for (int n = 0; n < N; ++n) {  // equation (21), with the rate's variance of two-point differencing
-    const auto start =
-        two_point_state<1>(Variance(first_->angles[static_cast<std::size_t>(n)]), R,
-                           Variance(now.angles[static_cast<std::size_t>(n)]), R, time_s - first_->time_s);
+    const PriorStart start = two_point_state(fix(*first_, n), fix(now, n), time_s - first_->time_s);
     filters_.emplace_back(start.x, start.P);
   }
   predicted_ = filters_;

@@ -15,9 +15,12 @@ function(truebearing_options target)
   endif()
 endfunction()
 
-# Of files of loops written for SIMD (core/simd_dispatch.hpp): floating-point traps and errno would keep the compiler from
-# it, and where the processor has fused multiply-adds they are wanted.
-set(TRUEBEARING_SIMD_OPTIONS -fopenmp-simd -fno-trapping-math -fno-math-errno -ffp-contract=fast)
+# truebearing_simd_sources(FILE...): loops written for SIMD (core/simd_dispatch.hpp); floating-point traps and errno would
+# keep the compiler from it. No precompiled header: with it g++ takes the options that the header was compiled with.
+function(truebearing_simd_sources)
+  set_source_files_properties(${ARGN} TARGET_DIRECTORY truebearing PROPERTIES SKIP_PRECOMPILE_HEADERS ON
+                              COMPILE_OPTIONS "-fopenmp-simd;-fno-trapping-math;-fno-math-errno;-ffp-contract=fast")
+endfunction()
 
 # truebearing_precompile(TARGET): the headers of others that nearly every file reads, parsed once.
 function(truebearing_precompile target)

@@ -9,7 +9,7 @@ namespace truebearing {
 
 Eigen::MatrixXd AngleInformation::powers_unknown() const {
   // Least squares: J(l, l) is singular where two signals come from one angle, of which only the sum can be heard.
-  const Eigen::MatrixXd known = angle_power * least_squares(powers, Eigen::MatrixXd(angle_power.transpose()));
+  const Eigen::MatrixXd known = angle_power * least_squares(powers, angle_power.transpose());
   return angles - 0.5 * (known + known.transpose());
 }
 

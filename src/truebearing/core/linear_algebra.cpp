@@ -7,12 +7,9 @@
 
 namespace truebearing {
 
-// Two sizes of storage for all N: on the stack, since solutions of target motion do not allocate, and on the heap.
 template <int N>
 SymmetricModes<N> symmetric_modes(const Eigen::Matrix<double, N, N>& A) {
-  constexpr int kMost = N == Eigen::Dynamic ? Eigen::Dynamic : 4;
-  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMost, kMost>;
-  const Eigen::SelfAdjointEigenSolver<Matrix> solver(Matrix{A});
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, N, N>> solver(A);
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
@@ -61,7 +58,7 @@ Eigen::Matrix<double, N, 1> solve_semidefinite(const Eigen::Matrix<double, N, N>
   return A.ldlt().solve(b);
 }
 
-Eigen::MatrixXd least_squares(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
+RowMajorMatrix least_squares(const Eigen::MatrixXd& A, const RowMajorMatrix& B) {
   return A.completeOrthogonalDecomposition().solve(B);
 }
 

@@ -37,8 +37,9 @@ template <int N>
 Eigen::Matrix<double, N, 1> solve_semidefinite(const Eigen::Matrix<double, N, N>& A,
                                                const Eigen::Matrix<double, N, 1>& b);
 
+using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 /// The X (n x m) of least norm among those that minimise |A X - B|, for A of any rank.
-Eigen::MatrixXd least_squares(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+RowMajorMatrix least_squares(const Eigen::MatrixXd& A, const RowMajorMatrix& B);
 
 // The same of complex matrices (linear_algebra_complex.cpp).
 

@@ -1,7 +1,7 @@
 // One loop nest compiled twice: for any processor, and for those with AVX2 and fused multiply-add, chosen at run time.
 //     TRUEBEARING_FOR_AVX2(name, (parameters), (arguments))
 // defines name(parameters), which calls the always-inline function name_loops(arguments) in one of the two. The file
-// that it stands in is compiled with TRUEBEARING_SIMD_OPTIONS (cmake/compile_options.cmake).
+// that it stands in is compiled with truebearing_simd_sources() (cmake/compile_options.cmake).
 #pragma once
 
 #include <type_traits>

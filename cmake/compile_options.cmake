@@ -22,7 +22,8 @@ function(truebearing_simd_sources)
                               COMPILE_OPTIONS "-fopenmp-simd;-fno-trapping-math;-fno-math-errno;-ffp-contract=fast")
 endfunction()
 
-# truebearing_precompile(TARGET): the headers of others that nearly every file reads, parsed once.
+# truebearing_precompile(TARGET [HEADER...]): the headers of others that nearly every file reads, and those of its own,
+# parsed once.
 function(truebearing_precompile target)
-  target_precompile_headers(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src/precompiled.hpp)
+  target_precompile_headers(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src/precompiled.hpp ${ARGN})
 endfunction()

@@ -2,7 +2,8 @@
 // for the steering vector a + b d_theta to lie in the span of W (M x N). Three ways to the same least-squares estimate:
 //     RyuInnovation         all unknowns at once: d_theta and the N complex coordinates (Ryu, Lee and Lee 1999)
 //     ProjectionInnovation  d_theta alone, with P_perp = I - W (W^H W)^-1 W^H (Ryu, Lee and Lee 2001, equations
-//     (7)-(13)) ImplicitInnovation    the same without a matrix of the sensors:
+//                           (7)-(13))
+//     ImplicitInnovation    the same without a matrix of the sensors:
 //         d_theta = -[Re(b^H a) - Re(yb^H ya)] / (|b|^2 - |yb|^2),  W^H W = L L^H,  ya = L^-1 W^H a,  yb = L^-1 W^H b
 // The printed P_perp has a transpose too many: with it, which conjugates the projector, no run keeps its targets.
 // Templates on the scalar, so that operations can be counted. The inverses are the papers' own; products are lazy, as

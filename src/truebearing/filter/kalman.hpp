@@ -1,6 +1,7 @@
 // The Kalman filter (Kalman 1960), and with a nonlinear motion or measurement model the first-order extended one: state
 // x (n), covariance P (n x n). A small value: no heap, no virtual call; Form says how P is carried and updated.
-//     predict  x = F x or f(x),  P = F P F' + Q  update  nu = residual(z, h(x)),  x = x + K nu,  P as Form says
+//     predict  x = F x or f(x),  P = F P F' + Q
+//     update   nu = residual(z, h(x)),  x = x + K nu,  P as Form says
 // Bar-Shalom, Li and Kirubarajan 2001, sections 5.2.3 and 10.3; the Jacobians F and H are taken at the estimate before
 // the step.
 #pragma once

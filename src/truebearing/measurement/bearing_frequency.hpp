@@ -1,6 +1,7 @@
 // Bearing and Doppler-shifted frequency of a target in the plane, x = [east, north, v_east, v_north, f0] in m, m/s and
 // Hz (n = 5), from a sensor that moves: z = [bearing_rad, frequency_hz] (m = 2), the bearing clockwise from North,
-//     f = f0 (1 - v_r / c),  v_r = (v - v_site) . u,  u = [sin bearing, cos bearing],     R = diag(sigma^2)
+//     f = f0 (1 - v_r / c),  v_r = (v - v_site) . u,  u = [sin bearing, cos bearing]
+//     R = diag(sigma^2)
 // (Kim and Song, equation 4, exact where theirs drops f0 v_r). Either component may be missing: its row of H is then
 // zero, its residual zero and its noise one, so that it changes neither estimate nor likelihood.
 #pragma once

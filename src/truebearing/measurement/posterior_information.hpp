@@ -1,6 +1,7 @@
 // The Fisher information about the state x_k (n) of a target that moves linearly, x' = F x + w, w ~ N(0, Q), carried
 // along with it:
-//     J' = (F J^-1 F' + Q)^-1 = (I + M Q)^-1 M,  M = F^-T J F^-1,        J <- J + H' R^-1 H
+//     J' = (F J^-1 F' + Q)^-1 = (I + M Q)^-1 M,  M = F^-T J F^-1
+//     J <- J + H' R^-1 H
 // which is the recursion of Tichavsky, Muravchik and Nehorai 1998, equation (21), written so that neither J nor Q need
 // have an inverse: without a prior J begins at zero, and without process noise it is the information of Cramer and Rao.
 // With States Eigen::Dynamic, parameters that measurements turn out to depend on can join the state as they are met.

@@ -2,8 +2,8 @@
 // (modified_polar.hpp). In its frame, with r = 1/rho, own ship's departure e from the velocity of its line along and
 // across the direction beta, and s^2 = u^2 + v^2,
 //
-//     v_r = [(r r'/r - e_par) u + (r beta' - e_perp) v] / s,   u = 1 + (r'/r) tau - rho d_par,  v = beta' tau - rho
-//     d_perp
+//     v_r = [(r r'/r - e_par) u + (r beta' - e_perp) v] / s
+//     u = 1 + (r'/r) tau - rho d_par,  v = beta' tau - rho d_perp
 //
 // The f0 of every level is taken at its best for y (variable projection: Golub and Pereyra 1973, with the normal matrix
 // of Kaufman 1975, A_yy - A_yf A_ff^-1 A_fy), so that the parameters stay four whatever the source did. A level of one

@@ -2,7 +2,8 @@
 // (Kim and Song: |z_k - z_k-1| / (sqrt(2) sigma) against a threshold gamma) and, for jumps that are too small for it,
 // by a score scan of the residuals after a batch. For every interval [a, b) of a level, w the weights, g = 1 - v_r / c:
 //
-//     s = sum_[a,b) w g r,   V = the sum of w g^2 there less what the state and the levels' f0s can take of it
+//     s = sum_[a,b) w g r
+//     V = the sum of w g^2 there less what the state and the levels' f0s can take of it
 //
 // s^2 / V is chi-square with one degree of freedom where f0 did not differ there. (The paper leaves out the frequencies
 // once an edge is found. One f0 for each level costs no accuracy.) A target that changes its velocity sounds much like

@@ -2,7 +2,8 @@
 // Marquardt's scaling and Nielsen's damping (Nielsen 1999; Madsen, Nielsen and Tingleff 2004, algorithm 3.16). Fixed
 // size, no heap.
 //
-//     (A + mu D) h = J'Wr,  A = J'WJ,  D = diag(A)          gain ratio = (F(x) - F(x + h)) / (L(0) - L(h))
+//     (A + mu D) h = J'Wr,  A = J'WJ,  D = diag(A)
+//     gain ratio = (F(x) - F(x + h)) / (L(0) - L(h))
 //
 // A problem is a callable: problem(x) gives the NormalEquations<N> there, not finite where x makes no sense.
 #pragma once

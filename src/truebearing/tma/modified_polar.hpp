@@ -2,8 +2,8 @@
 // well is kept apart from the range. Own ship's motion is its straight-line fit o(t) = a + b tau, tau = t - origin, and
 // the rest d(t); relative to the line the target is at
 //
-//     y = [beta, beta', r'/r, rho = 1/r]  at origin,    B = beta + atan2(beta' tau - rho d_perp, 1 + (r'/r) tau - rho
-//     d_par)
+//     y = [beta, beta', r'/r, rho = 1/r]  at origin
+//     B = beta + atan2(beta' tau - rho d_perp, 1 + (r'/r) tau - rho d_par)
 //
 // with d_par, d_perp along and across (to starboard of) the direction beta. Where own ship has not manoeuvred, d = 0
 // and rho drops out: the geometry does not determine the range.

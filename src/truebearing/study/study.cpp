@@ -7,9 +7,10 @@
 #include "truebearing/core/suggestion.hpp"
 #include "truebearing/correction/corrected_tracker.hpp"
 #include "truebearing/correction/model_file.hpp"
+#include "truebearing/evaluation/metric_registry.hpp"
 #include "truebearing/simulation/line_array_scenario.hpp"
+#include "truebearing/study/angle_bound_scoring.hpp"
 #include "truebearing/study/configuration_text.hpp"
-#include "truebearing/study/track_scoring.hpp"
 #include "truebearing/study/tracker_registry.hpp"
 #include "truebearing/tracker/recorded_tracker.hpp"
 #include "truebearing/tracker/step_log_scenario.hpp"
@@ -133,8 +134,8 @@ void Study::read_scoring(TableReader scoring) {
         throw scoring.error("pairs", "holds \"" + pair + "\"", "\"a - b\" with names of trackers");
       pairs_.emplace_back(known("pairs", pair.substr(0, dash)), known("pairs", pair.substr(dash + 3)));
     }
+  read_metrics(scoring, scenario_->truth_space(), scoring_);
   timed_ = read_timed_scoring(scoring, scenario_->truth_space(), scoring_);
-  read_track_scoring(scoring, scenario_->truth_space(), scoring_);
   angle_bound_ = read_angle_bound(scoring, scenario_->truth_space());
   if (angle_bound_) check_angle_bound(scoring);
   if (!timed_.global_minimum.empty()) known("global_minimum", timed_.global_minimum);

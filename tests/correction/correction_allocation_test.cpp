@@ -6,6 +6,7 @@
 
 #include "tests/support/allocation_count.hpp"
 #include "tests/support/correction_models.hpp"
+#include "tests/support/fakes.hpp"
 #include "tests/support/line_trackers.hpp"
 #include "tests/support/plane_trackers.hpp"
 #include "truebearing/correction/corrected_tracker.hpp"
@@ -116,23 +117,12 @@ TEST(CorrectedTracker, StepsInThePlaneAllocateNothing) {
 }
 
 // A tracker that allocates in its steps must be caught, wherever it sits.
-class WastefulTracker final : public Tracker {
- public:
-  std::span<const StepRecord> step(const Measurement& measurement) override {
-    const Eigen::MatrixXd square = Eigen::MatrixXd::Constant(20, 20, measurement.time_s);
-    record_.time_s = square.trace();
-    return {&record_, 1};
-  }
-  void reset() override {}
-  std::unique_ptr<Tracker> fresh() const override { return std::make_unique<WastefulTracker>(); }
-  const StateSpace& space() const override { return line_space(); }
-
- private:
-  StepRecord record_;
-};
-
 TEST(Allocation, OfATrackerThatAllocatesIsCaught) {
-  WastefulTracker tracker;
+  testing::FakeTracker tracker(line_space(), [](const Measurement& measurement, std::size_t, auto& said) {
+    const Eigen::MatrixXd square = Eigen::MatrixXd::Constant(20, 20, measurement.time_s);
+    said.records.push_back(testing::fake_record(line_space(), measurement, {}, {}));
+    said.records.back().time_s = square.trace();
+  });
   EXPECT_GE(allocations_of_second_pass(tracker), 240);
 }
 

@@ -7,6 +7,7 @@
 
 #include "tests/support/correction_models.hpp"
 #include "tests/support/error_message.hpp"
+#include "tests/support/fakes.hpp"
 #include "tests/support/line_trackers.hpp"
 #include "truebearing/core/covariance.hpp"
 #include "truebearing/correction/corrected_tracker.hpp"
@@ -25,31 +26,8 @@ using testing::radar_features;
 using testing::radar_log;
 using testing::RadarFilter;
 using testing::random_parameters;
+using testing::ScriptedTracker;
 using testing::shared;
-
-// Says what the test wants it to say.
-class ScriptedTracker final : public Tracker {
- public:
-  explicit ScriptedTracker(RecordBlocks blocks = {true, true, true, false}) : blocks_(blocks) {
-    record.space = &line_space();
-    record.x = BoundedVector::Zero(2);
-    record.P = BoundedMatrix::Identity(2, 2);
-    record.innovation = Innovation{BoundedVector::Zero(1), BoundedVector::Zero(1), BoundedMatrix::Identity(1, 1), 0.0};
-  }
-  std::span<const StepRecord> step(const Measurement&) override { return {&record, shown ? 1u : 0u}; }
-  void reset() override {}
-  std::unique_ptr<Tracker> fresh() const override { return std::make_unique<ScriptedTracker>(*this); }
-  const StateSpace& space() const override { return line_space(); }
-  RecordBlocks blocks() const override { return blocks_; }
-  std::span<const TrackEvent> events() const override { return noticed; }
-
-  StepRecord record;
-  std::vector<TrackEvent> noticed;
-  bool shown = true;
-
- private:
-  RecordBlocks blocks_;
-};
 
 struct Scene {
   Ensemble ensemble;

@@ -171,15 +171,14 @@ TEST(AngleBoundSummary, ByHand) {
 
 Comparison compared(const Recording& first, const Recording& second) {
   Ensemble ensemble;
-  ensemble.add("told", std::make_unique<testing::ToldTracker>(
-                           testing::AnglesOfTracks{{0, {10, 10, 10, 10}}, {1, {40, 40, 40, 40}}}));
+  ensemble.add("told", testing::told_tracker(testing::AnglesOfTracks{{0, {10, 10, 10, 10}}, {1, {40, 40, 40, 40}}}));
   TrackerSet set(std::move(ensemble));
   set.show_member("told");
   ComparisonOptions options;
   options.runs = 2;
   options.scoring.from_step = 3;
   options.angle_bound = AngleBound{};
-  const testing::AngleScenario a(first), b(second);
+  const testing::FakeScenario a(first), b(second);
   return compare(set, {{"apart", &a}, {"close", &b}}, options);
 }
 

@@ -6,12 +6,15 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/support/fakes.hpp"
+#include "tests/support/metric_runs.hpp"
 #include "truebearing/evaluation/comparison.hpp"
 #include "truebearing/evaluation/report.hpp"
 
 namespace truebearing {
 namespace {
 
+using testing::find_metric;
 using ::testing::HasSubstr;
 using Kind = TrackEvent::Kind;
 
@@ -20,22 +23,16 @@ const Scorer kSource(plane_frequency_space(), plane_frequency_space());
 const Scorer kPlane(plane_space(), plane_space());
 
 RunScore run(std::optional<double> turns_at_s, std::vector<TrackEvent> events) {
+  const auto kept = std::make_shared<EventFigures>();
+  kept->turns_at_s = turns_at_s;
+  kept->events = std::move(events);
   RunScore score;
-  score.turns_at_s = turns_at_s;
-  score.events = std::move(events);
+  score.figures = {kept};
   return score;
 }
 
 std::vector<Metric> metrics(const Scorer& scorer, const std::vector<RunScore>& runs) {
-  std::vector<const RunScore*> all;
-  for (const RunScore& score : runs) all.push_back(&score);
-  return event_metrics(scorer, all);
-}
-
-std::optional<Metric> find(const std::vector<Metric>& all, const std::string& name) {
-  for (const Metric& metric : all)
-    if (metric.name == name) return metric;
-  return std::nullopt;
+  return testing::figures(*event_metrics(), scorer, runs);
 }
 
 TEST(EventMetrics, ByHand) {
@@ -47,12 +44,13 @@ TEST(EventMetrics, ByHand) {
       run(kNever, {{Kind::source_changed, 900.0, 99.0}, {Kind::source_changed, 950.0, 100.0}}),
   };
   const std::vector<Metric> found = metrics(kSource, runs);
-  EXPECT_DOUBLE_EQ(find(found, "source_change_share")->value, 2.0 / 5.0) << "runs, not events";
-  EXPECT_DOUBLE_EQ(find(found, "source_change_share")->se, std::sqrt(0.4 * 0.6 / 5.0));
-  EXPECT_EQ(find(found, "turn_delay")->unit, "s");
-  EXPECT_DOUBLE_EQ(find(found, "turn_delay")->value, (20.0 + 100.0) / 2.0) << "the first one from the turn on";
-  EXPECT_DOUBLE_EQ(find(found, "turn_found_share")->value, 2.0 / 3.0) << "of the runs that turn";
-  EXPECT_DOUBLE_EQ(find(found, "false_turn_share")->value, 2.0 / 5.0) << "before the turn, and where there is none";
+  EXPECT_DOUBLE_EQ(find_metric(found, "source_change_share").value, 2.0 / 5.0) << "runs, not events";
+  EXPECT_DOUBLE_EQ(find_metric(found, "source_change_share").se, std::sqrt(0.4 * 0.6 / 5.0));
+  EXPECT_EQ(find_metric(found, "turn_delay").unit, "s");
+  EXPECT_DOUBLE_EQ(find_metric(found, "turn_delay").value, (20.0 + 100.0) / 2.0) << "the first one from the turn on";
+  EXPECT_DOUBLE_EQ(find_metric(found, "turn_found_share").value, 2.0 / 3.0) << "of the runs that turn";
+  EXPECT_DOUBLE_EQ(find_metric(found, "false_turn_share").value, 2.0 / 5.0)
+      << "before the turn, and where there is none";
   for (const Metric& metric : found) EXPECT_FALSE(metric.time_s);
 }
 
@@ -65,64 +63,45 @@ TEST(EventMetrics, AreOfTrackersThatReportAndOfWhatIsTold) {
   EXPECT_EQ(quiet[0].name, "false_turn_share");
   EXPECT_EQ(quiet[0].value, 0.0);
   const std::vector<Metric> blind = metrics(kPlane, {run(1500.0, {{Kind::handed_over, 1050.0}})});
-  EXPECT_EQ(find(blind, "turn_found_share")->value, 0.0);
-  EXPECT_TRUE(std::isnan(find(blind, "turn_delay")->value));
+  EXPECT_EQ(find_metric(blind, "turn_found_share").value, 0.0);
+  EXPECT_TRUE(std::isnan(find_metric(blind, "turn_delay").value));
 }
 
-// Stands still where the first measurement was, and says so.
-class Reporter final : public Tracker {
- public:
-  explicit Reporter(bool reports) : reports_(reports) {
-    record_.space = &plane_space();
-    record_.x = BoundedVector::Zero(4);
-    record_.P = BoundedMatrix::Identity(4, 4);
-  }
-  std::span<const StepRecord> step(const Measurement& measurement) override {
-    record_.time_s = measurement.time_s;
-    if (reports_ && measurement.time_s == 30.0) events_.push_back({Kind::turn_began, 25.0});
-    return {&record_, 1};
-  }
-  void reset() override { events_.clear(); }
-  std::unique_ptr<Tracker> fresh() const override { return std::make_unique<Reporter>(reports_); }
-  const StateSpace& space() const override { return plane_space(); }
-  std::span<const TrackEvent> events() const override { return events_; }
+// Stands still where the target is, and notices its turn or does not.
+std::unique_ptr<Tracker> reporter(bool reports) {
+  const auto say = [reports](const Measurement& measurement, std::size_t, testing::FakeTracker::Said& said) {
+    said.records.push_back(
+        testing::fake_record(plane_space(), measurement, BoundedVector::Zero(4), BoundedMatrix::Identity(4, 4)));
+    if (reports && measurement.time_s == 30.0) said.events.push_back({Kind::turn_began, 25.0});
+  };
+  return std::make_unique<testing::FakeTracker>(plane_space(), say);
+}
 
- private:
-  bool reports_;
-  StepRecord record_;
-  std::vector<TrackEvent> events_;
-};
-
-class TurnAtTwenty final : public Scenario {
- public:
-  Recording simulate(const RunKey&) const override {
-    Recording recording;
-    recording.measured = {"east_m", "north_m"};
-    recording.truth_space = &plane_space();
-    recording.truth.resize(1);
-    recording.truth[0].turns_at_s = 20.0;
-    for (int k = 0; k < 6; ++k) {
-      recording.measurements.push_back({.time_s = 10.0 * k, .z = BoundedVector::Zero(2), .sigma = {}, .sensor = {}});
-      recording.truth[0].x.push_back(BoundedVector::Zero(4));
-    }
-    return recording;
+Recording turn_at_twenty() {
+  Recording recording;
+  recording.measured = {"east_m", "north_m"};
+  recording.truth_space = &plane_space();
+  recording.truth.resize(1);
+  recording.truth[0].turns_at_s = 20.0;
+  for (int k = 0; k < 6; ++k) {
+    recording.measurements.push_back({.time_s = 10.0 * k, .z = BoundedVector::Zero(2), .sigma = {}, .sensor = {}});
+    recording.truth[0].x.push_back(BoundedVector::Zero(4));
   }
-  const StateSpace& truth_space() const override { return plane_space(); }
-};
+  return recording;
+}
 
 TEST(EventMetrics, ComeThroughAComparison) {
   Ensemble ensemble;
-  ensemble.add("awake", std::make_unique<Reporter>(true));
-  ensemble.add("asleep", std::make_unique<Reporter>(false));
+  ensemble.add("awake", reporter(true));
+  ensemble.add("asleep", reporter(false));
   TrackerSet set(std::move(ensemble));
   set.show_member("awake");
   set.show_member("asleep");
   ComparisonOptions options;
   options.runs = 3;
-  const TurnAtTwenty scenario;
+  const testing::FakeScenario scenario(turn_at_twenty());
   const Comparison comparison = compare(set, {{"turn", &scenario}}, options);
-  ASSERT_TRUE(find(comparison.trackers[0].metrics, "turn_delay"));
-  EXPECT_EQ(find(comparison.trackers[0].metrics, "turn_delay")->value, 5.0);
+  EXPECT_EQ(find_metric(comparison.trackers[0].metrics, "turn_delay").value, 5.0);
   EXPECT_TRUE(comparison.trackers[1].metrics.empty());
   EXPECT_THAT(comparison_json(comparison), HasSubstr("\"turn_found_share\""));
   EXPECT_THAT(comparison_table(comparison), HasSubstr("turn delay s"));

@@ -6,6 +6,9 @@
 #include "tests/support/angle_tracks.hpp"
 #include "tests/support/error_message.hpp"
 #include "tests/support/line_trackers.hpp"
+#include "truebearing/evaluation/event_metrics.hpp"
+#include "truebearing/evaluation/gospa_metrics.hpp"
+#include "truebearing/evaluation/track_metrics.hpp"
 #include "truebearing/tracker/raw_tracker.hpp"
 
 namespace truebearing {
@@ -116,7 +119,7 @@ TEST(ScoreRecording, FiguresAtTimesAreOfOneTarget) {
 // The score of a tracker that says `told` of a recording.
 RunScore score_of(const testing::AnglesOfTracks& told, const Recording& recording, const ScoringRule& rule = {}) {
   Ensemble ensemble;
-  ensemble.add("told", std::make_unique<testing::ToldTracker>(told));
+  ensemble.add("told", testing::told_tracker(told));
   TrackerSet set(std::move(ensemble));
   set.show_member("told");
   return score_recording(set, {Scorer(angle_space(), angle_space())}, recording, rule)[0];
@@ -170,35 +173,37 @@ TEST(ScoreRecording, PhasesAndTurnsAreThoseOfTheirTargets) {
   for (Truth& truth : recording.truth) truth.turns_at_s = 1.0;
   const RunScore score = score_of({{0, {10, 10}}}, recording);
   EXPECT_THAT(score.phase, ElementsAre(0, 1, -1, -1, 1, 1));
-  EXPECT_FALSE(score.turns_at_s) << "nobody says whose";
+  EXPECT_FALSE(score.of<EventFigures>()->turns_at_s) << "nobody says whose";
 }
 
 TEST(ScoreRecording, TracksOfARuleHaveAnOutcome) {
   const Recording recording = testing::angle_recording({{0, {0, 0, 0}}, {1, {20, 20, 20}}});
   const testing::AnglesOfTracks swapped{{0, {0, 20, 20}}, {1, {20, 0, 0}}};
-  EXPECT_FALSE(score_of(swapped, recording).tracks) << "nobody asked";
+  EXPECT_FALSE(score_of(swapped, recording).of<TrackFigures>()) << "nobody asked";
   ScoringRule rule;
-  rule.tracks = TrackRule{.quantity = "angle_deg", .bad = 3.0, .last_steps = 2, .excursion = 6.0};
-  EXPECT_EQ(score_of(swapped, recording, rule).tracks->swapped, 2);
-  EXPECT_TRUE(score_of({{0, {1, 1, 1}}, {1, {19, 19, 19}}}, recording, rule).tracks->is_clean());
+  rule.families = {track_metrics({.quantity = "angle_deg", .bad = 3.0, .last_steps = 2, .excursion = 6.0})};
+  EXPECT_EQ(score_of(swapped, recording, rule).of<TrackFigures>()->outcome.swapped, 2);
+  EXPECT_TRUE(score_of({{0, {1, 1, 1}}, {1, {19, 19, 19}}}, recording, rule).of<TrackFigures>()->outcome.is_clean());
   rule.from_step = 3;
-  EXPECT_TRUE(score_of({{0, {70, 70, 1}}, {1, {19, 19, 19}}}, recording, rule).tracks->is_clean())
+  EXPECT_TRUE(score_of({{0, {70, 70, 1}}, {1, {19, 19, 19}}}, recording, rule).of<TrackFigures>()->outcome.is_clean())
       << "what is not scored is not looked at";
 }
 
 TEST(ScoreRecording, GospaAssignsRecordsWhateverTheirNumbers) {
   const Recording recording = testing::angle_recording({{0, {0, 0, kNaN}}, {1, {20, 20, 20}}});
   ScoringRule rule;
-  rule.gospa = GospaRule{"angle_deg", 4.0};
+  rule.assignment = AssignmentRule{"angle_deg", 4.0};
+  rule.families = {gospa_metrics()};
   const RunScore score = score_of({{7, {21, 22, 23}}, {8, {1, 9, kNaN}}}, recording, rule);
   expect_errors(score, {1, kNaN, kNaN, 1, 2, 3});
-  ASSERT_TRUE(score.gospa);
-  EXPECT_EQ(score.gospa->steps, 3.0);
-  EXPECT_EQ(score.gospa->missed, 1.0) << "the first target, at the second step";
-  EXPECT_EQ(score.gospa->false_tracks, 1.0);
-  EXPECT_NEAR(score.gospa->localisation, 1 + 1 + 4 + 9, 1e-9);
-  EXPECT_NEAR(score.gospa->squared, 15 + 2 * 8, 1e-9);
-  EXPECT_FALSE(score_of({{0, {0, 0, 0}}}, recording).gospa);
+  const auto* gospa = score.of<GospaFigures>();
+  ASSERT_TRUE(gospa);
+  EXPECT_EQ(gospa->steps, 3.0);
+  EXPECT_EQ(gospa->missed, 1.0) << "the first target, at the second step";
+  EXPECT_EQ(gospa->false_tracks, 1.0);
+  EXPECT_NEAR(gospa->localisation, 1 + 1 + 4 + 9, 1e-9);
+  EXPECT_NEAR(gospa->squared, 15 + 2 * 8, 1e-9);
+  EXPECT_FALSE(score_of({{0, {0, 0, 0}}}, recording).of<GospaFigures>());
 }
 
 }  // namespace

@@ -3,12 +3,14 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/line_trackers.hpp"
+#include "tests/support/metric_runs.hpp"
 #include "truebearing/core/chi_square.hpp"
 
 namespace truebearing {
 namespace {
 
 using testing::kNaN;
+using testing::pointers;
 
 const Scorer kScorer(line_space(), line_space());
 
@@ -18,12 +20,6 @@ RunScore run(std::vector<double> position, std::vector<double> velocity, std::ve
   score.quantity_nees = {nees, nees};
   score.nees = std::move(nees);
   return score;
-}
-
-std::vector<const RunScore*> pointers(const std::vector<RunScore>& runs) {
-  std::vector<const RunScore*> all;
-  for (const RunScore& score : runs) all.push_back(&score);
-  return all;
 }
 
 // Runs of different lengths of scored steps, a NaN here and there.

@@ -4,15 +4,19 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tests/support/fakes.hpp"
 #include "truebearing/core/angle.hpp"
 #include "truebearing/evaluation/comparison.hpp"
 #include "truebearing/evaluation/report.hpp"
+#include "truebearing/evaluation/target_motion_metrics.hpp"
 #include "truebearing/simulation/bearings_only_scenario.hpp"
 
 namespace truebearing {
 namespace {
 
 using nlohmann::json;
+using testing::fake_record;
+using testing::FakeTracker;
 using ::testing::HasSubstr;
 
 // Own ship from the origin to the North at 5 m/s, to the East from 200 s; the target 5 km away at the start.
@@ -33,44 +37,31 @@ BearingsOnlyParameters two_legs() {
 }
 
 // Says that the target of two_legs() is `factor` times as far and fast as it is, whatever it measures.
-class FixedTracker final : public Tracker {
- public:
-  FixedTracker(double factor, std::optional<double> cost = {}) : factor_(factor), cost_(cost) {}
-  std::span<const StepRecord> step(const Measurement& measurement) override {
-    const VesselPath path({5000.0 * std::sin(radians(60.0)), 5000.0 * std::cos(radians(60.0))}, 2.0, radians(200.0),
-                          {});
+std::unique_ptr<Tracker> fixed_tracker(double factor, std::optional<double> cost = {}) {
+  const VesselPath path({5000.0 * std::sin(radians(60.0)), 5000.0 * std::cos(radians(60.0))}, 2.0, radians(200.0), {});
+  const auto say = [=](const Measurement& measurement, std::size_t, FakeTracker::Said& said) {
     const SensorState target = path.at(measurement.time_s).state;
     const Eigen::Vector2d own_ship = measurement.sensor->position_m;
-    record_.time_s = measurement.time_s;
-    record_.space = &plane_space();
-    record_.x.resize(4);
-    record_.x << own_ship + factor_ * (target.position_m - own_ship), factor_ * target.velocity_mps;
-    record_.P = 1e4 * BoundedMatrix::Identity(4, 4);
-    if (cost_) record_.batch = BatchOutcome{*cost_, 5, 225, 3};
-    return {&record_, 1};
-  }
-  void reset() override {}
-  std::unique_ptr<Tracker> fresh() const override { return std::make_unique<FixedTracker>(factor_, cost_); }
-  const StateSpace& space() const override { return plane_space(); }
-
- private:
-  double factor_;
-  std::optional<double> cost_;
-  StepRecord record_;
-};
+    Eigen::Vector4d x;
+    x << own_ship + factor * (target.position_m - own_ship), factor * target.velocity_mps;
+    said.records.push_back(fake_record(plane_space(), measurement, x, 1e4 * BoundedMatrix::Identity(4, 4)));
+    if (cost) said.records.back().batch = BatchOutcome{*cost, 5, 225, 3};
+  };
+  return std::make_unique<FakeTracker>(plane_space(), say);
+}
 
 Comparison compared(int threads = 1, bool reached = true) {
   Ensemble ensemble;
-  ensemble.add("true", std::make_unique<FixedTracker>(1.0, 40.0));
-  ensemble.add("far", std::make_unique<FixedTracker>(1.3, 40.1));
-  ensemble.add("diverged", std::make_unique<FixedTracker>(1e12));
+  ensemble.add("true", fixed_tracker(1.0, 40.0));
+  ensemble.add("far", fixed_tracker(1.3, 40.1));
+  ensemble.add("diverged", fixed_tracker(1e12));
   TrackerSet set(std::move(ensemble));
   for (const char* name : {"true", "far", "diverged"}) set.show_member(name);
   ComparisonOptions options;
   options.runs = 4;
   options.threads = threads;
   options.scoring.times_s = {100.0, reached ? 400.0 : 4000.0};
-  options.scoring.target_motion = true;
+  options.scoring.families.push_back(target_motion_metrics());
   options.cramer_rao = TargetMotionBound{};
   options.global_minimum = "true";
   options.pairs = {{"far", "true"}};
@@ -132,13 +123,13 @@ TEST(TimedComparison, OfPassiveSonarHasTheBoundOnTheFrequencyToo) {
   turn.angle_deg = 30.0;
   parameters.target.turns = {turn};
   Ensemble ensemble;
-  ensemble.add("far", std::make_unique<FixedTracker>(1.3));
+  ensemble.add("far", fixed_tracker(1.3));
   TrackerSet set(std::move(ensemble));
   set.show_member("far");
   ComparisonOptions options;
   options.runs = 2;
   options.scoring.times_s = {280.0, 400.0};
-  options.scoring.target_motion = true;
+  options.scoring.families.push_back(target_motion_metrics());
   options.cramer_rao = TargetMotionBound{};
   const BearingsOnlyScenario scenario(parameters);
   const Comparison comparison = compare(set, {{"sonar", &scenario}}, options);

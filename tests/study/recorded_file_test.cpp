@@ -7,6 +7,7 @@
 
 #include "tests/support/array_recording.hpp"
 #include "tests/support/error_message.hpp"
+#include "tests/support/fakes.hpp"
 #include "tests/support/flight_study.hpp"
 #include "tests/support/radar_study.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -65,18 +66,10 @@ TEST_F(RecordedFileTest, SigmaIsReportedWhereTheSimulatedSensorReportsIt) {
   EXPECT_EQ(recorded->simulate({}).measurements[0].sigma, Eigen::Vector2d(50, 50));
 }
 
-/// A study's scenario of a line array, and what it hears.
-class ArrayScenario final : public Scenario {
- public:
-  Recording simulate(const RunKey&) const override { return testing::array_recording(); }
-  const StateSpace& truth_space() const override { return angle_space(); }
-  std::optional<Measured> measured() const override { return Measured::snapshots(); }
-};
-
 TEST_F(RecordedFileTest, SnapshotLogIsReplayedWithItsTargets) {
   const std::filesystem::path path = folder_.path() / "log.h5";
-  const ArrayScenario trained_on;
   Recording recorded = testing::array_recording();
+  const testing::FakeScenario trained_on(recorded);
   write_snapshot_log(path, recorded);
   const RecordedFile file(path, std::nullopt, trained_on, "study.toml");
   EXPECT_EQ(&file.truth_space(), &angle_space());

@@ -6,6 +6,7 @@
 #include "tests/support/error_message.hpp"
 #include "tests/support/radar_study.hpp"
 #include "truebearing/core/angle.hpp"
+#include "truebearing/evaluation/metric_registry.hpp"
 #include "truebearing/study/study.hpp"
 
 namespace truebearing {
@@ -25,6 +26,7 @@ Read read(const std::string& text, const StateSpace& truth = plane_space()) {
   const toml::table table = parse_toml(text, "study.toml");
   TableReader reader(table, "study.toml", "scoring");
   Read made;
+  read_metrics(reader, truth, made.rule);
   made.timed = read_timed_scoring(reader, truth, made.rule);
   reader.finish();
   return made;
@@ -40,7 +42,7 @@ TEST(TimedScoring, AllKeys) {
       "bound = { kind = \"cramer_rao\", q_m2ps3 = 9e-6, bearing_sigma_deg = 1.5, prior = { kind = \"range\", range_m = 6000.0, "
       "range_sigma_m = 2000.0, velocity_sigma_mps = 4.0 } }");
   EXPECT_THAT(made.rule.times_s, ElementsAre(280.0, 480.5));
-  EXPECT_TRUE(made.rule.target_motion);
+  EXPECT_EQ(made.rule.families.size(), usual_metrics().size() + 1) << "the target's motion";
   EXPECT_EQ(made.timed.global_minimum, "ml_225");
   ASSERT_TRUE(made.timed.cramer_rao && made.timed.cramer_rao->prior);
   EXPECT_EQ(made.timed.cramer_rao->q_m2ps3, 9e-6);
@@ -51,7 +53,7 @@ TEST(TimedScoring, AllKeys) {
 TEST(TimedScoring, NothingAskedForIsNothing) {
   const Read made = read("", line_space());
   EXPECT_TRUE(made.rule.times_s.empty());
-  EXPECT_FALSE(made.rule.target_motion);
+  EXPECT_EQ(made.rule.families.size(), usual_metrics().size());
   EXPECT_FALSE(made.timed.cramer_rao);
   EXPECT_TRUE(made.timed.global_minimum.empty());
   EXPECT_FALSE(read("times_s = [1.0]\nbound = { kind = \"cramer_rao\" }").timed.cramer_rao->prior);

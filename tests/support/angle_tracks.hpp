@@ -7,9 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "tests/support/fakes.hpp"
 #include "truebearing/core/angle.hpp"
-#include "truebearing/simulation/scenario.hpp"
-#include "truebearing/tracker/tracker.hpp"
 
 namespace truebearing::testing {
 
@@ -35,49 +34,21 @@ inline Recording angle_recording(const AnglesOfTracks& angles_deg) {
   return recording;
 }
 
-/// The same recording in every run.
-class AngleScenario final : public Scenario {
- public:
-  explicit AngleScenario(Recording recording) : recording_(std::move(recording)) {}
-  Recording simulate(const RunKey&) const override { return recording_; }
-  const StateSpace& truth_space() const override { return angle_space(); }
-
- private:
-  Recording recording_;
-};
-
 /// Publishes those angles, each with a rate of 0 and a standard deviation of 1 degree; no record where one is NaN.
-class ToldTracker final : public Tracker {
- public:
-  explicit ToldTracker(AnglesOfTracks angles_deg) : angles_deg_(std::move(angles_deg)) {}
-
-  std::span<const StepRecord> step(const Measurement& measurement) override {
-    records_.clear();
-    for (const auto& [track, angles] : angles_deg_) {
-      const double angle = angles[step_];
+inline std::unique_ptr<Tracker> told_tracker(AnglesOfTracks angles_deg) {
+  const auto say = [angles_deg = std::move(angles_deg)](const Measurement& measurement, std::size_t step,
+                                                        FakeTracker::Said& said) {
+    for (const auto& [track, angles] : angles_deg) {
+      const double angle = angles[step];
       if (!(angle == angle)) continue;
-      StepRecord record;
-      record.track = track;
-      record.time_s = measurement.time_s;
-      record.space = &angle_space();
-      record.x = Eigen::Vector2d(radians(angle), 0.0);
-      record.P = BoundedMatrix::Identity(2, 2) * radians(1.0) * radians(1.0);
-      record.innovation = Innovation{BoundedVector::Zero(1), BoundedVector::Constant(1, angle),
-                                     BoundedMatrix::Identity(1, 1), angle * angle};
-      records_.push_back(record);
+      said.records.push_back(fake_record(angle_space(), measurement, Eigen::Vector2d(radians(angle), 0.0),
+                                         BoundedMatrix::Identity(2, 2) * radians(1.0) * radians(1.0)));
+      said.records.back().track = track;
+      said.records.back().innovation = Innovation{BoundedVector::Zero(1), BoundedVector::Constant(1, angle),
+                                                  BoundedMatrix::Identity(1, 1), angle * angle};
     }
-    ++step_;
-    return records_;
-  }
-  void reset() override { step_ = 0; }
-  std::unique_ptr<Tracker> fresh() const override { return std::make_unique<ToldTracker>(angles_deg_); }
-  const StateSpace& space() const override { return angle_space(); }
-  RecordBlocks blocks() const override { return {.innovation = true}; }
-
- private:
-  AnglesOfTracks angles_deg_;
-  std::size_t step_ = 0;
-  std::vector<StepRecord> records_;
-};
+  };
+  return std::make_unique<FakeTracker>(angle_space(), say, RecordBlocks{.innovation = true});
+}
 
 }  // namespace truebearing::testing

@@ -33,4 +33,28 @@ inline Metric metric(const Comparison& comparison, const std::string& tracker, c
   return {};
 }
 
+/// What a - b is in that quantity, over all times; a failure where the comparison has no such pair.
+inline PairedDifference difference(const Comparison& comparison, const std::string& a, const std::string& b,
+                                   const std::string& quantity) {
+  for (const Comparison::Pair& pair : comparison.pairs)
+    for (const PairedDifference& found : pair.differences)
+      if (pair.a == a && pair.b == b && found.quantity == quantity && !found.time_s) return found;
+  ADD_FAILURE() << "there is no " << a << " - " << b << " in " << quantity;
+  return {};
+}
+
+/// a is better than b in that quantity by more than two standard errors of the paired difference.
+inline void expect_better(const Comparison& comparison, const std::string& a, const std::string& b,
+                          const std::string& quantity) {
+  const PairedDifference found = difference(comparison, a, b, quantity);
+  EXPECT_LT(found.mean + 2.0 * found.se, 0.0) << a << " - " << b << ", " << quantity;
+}
+
+/// a is at most `margin` worse than b in that quantity, up to two standard errors of the paired difference.
+inline void expect_no_worse(const Comparison& comparison, const std::string& a, const std::string& b,
+                            const std::string& quantity, double margin = 0.0) {
+  const PairedDifference found = difference(comparison, a, b, quantity);
+  EXPECT_LT(found.mean - 2.0 * found.se, margin) << a << " - " << b << ", " << quantity;
+}
+
 }  // namespace truebearing::testing

@@ -28,12 +28,20 @@ inline double mean_margin(double sigma, std::size_t count) {
   return normal_quantile(1.0 - 0.5 * kMissProbability) * sigma / std::sqrt(static_cast<double>(count));
 }
 
+/// Does a sum of squared normalised errors, of that many degrees of freedom, lie below, or above, what chi-square
+/// leaves to chance?
+inline bool is_too_small(double sum, double freedom) {
+  return sum < chi_square_quantile(0.5 * kMissProbability, freedom);
+}
+inline bool is_too_large(double sum, double freedom) {
+  return sum > chi_square_quantile(1.0 - 0.5 * kMissProbability, freedom);
+}
+
 /// Does the sample variance of `count` normal values fit the variance they should have?
 inline bool variance_fits(double sample_variance, double variance, std::size_t count) {
   const double freedom = static_cast<double>(count) - 1.0;
   const double statistic = freedom * sample_variance / variance;
-  return statistic > chi_square_quantile(0.5 * kMissProbability, freedom) &&
-         statistic < chi_square_quantile(1.0 - 0.5 * kMissProbability, freedom);
+  return !is_too_small(statistic, freedom) && !is_too_large(statistic, freedom);
 }
 
 /// Pearson's statistic of counts against equal expectation.

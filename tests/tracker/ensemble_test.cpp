@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/error_message.hpp"
+#include "tests/support/fakes.hpp"
 #include "tests/support/line_trackers.hpp"
 
 namespace truebearing {
@@ -14,33 +15,23 @@ using testing::position;
 using testing::RadarFilter;
 
 // Publishes two tracks in an order of its own.
-class TwoTracks final : public Tracker {
- public:
-  explicit TwoTracks(bool swapped) : swapped_(swapped) { reset(); }
-  std::span<const StepRecord> step(const Measurement& measurement) override {
-    for (StepRecord& record : records_) {
-      record.time_s = measurement.time_s;
-      record.x = BoundedVector::Constant(2, 10.0 * record.track + (swapped_ ? 1.0 : 0.0));
-      record.P = BoundedMatrix::Identity(2, 2);
+std::unique_ptr<Tracker> two_tracks(bool swapped) {
+  const auto say = [swapped](const Measurement& measurement, std::size_t, testing::FakeTracker::Said& said) {
+    for (const int place : {0, 1}) {
+      const int track = swapped ? 1 - place : place;
+      said.records.push_back(testing::fake_record(line_space(), measurement,
+                                                  BoundedVector::Constant(2, 10.0 * track + (swapped ? 1.0 : 0.0)),
+                                                  BoundedMatrix::Identity(2, 2)));
+      said.records.back().track = track;
     }
-    return records_;
-  }
-  void reset() override {
-    records_.assign(2, StepRecord{});
-    records_[swapped_ ? 0 : 1].track = 1;
-  }
-  std::unique_ptr<Tracker> fresh() const override { return std::make_unique<TwoTracks>(swapped_); }
-  const StateSpace& space() const override { return line_space(); }
-
- private:
-  bool swapped_;
-  std::vector<StepRecord> records_;
-};
+  };
+  return std::make_unique<testing::FakeTracker>(line_space(), say);
+}
 
 TEST(Ensemble, RecordsAreAlignedByTrackNotByPlace) {
   Ensemble ensemble;
-  ensemble.add("a", std::make_unique<TwoTracks>(false));
-  ensemble.add("b", std::make_unique<TwoTracks>(true));
+  ensemble.add("a", two_tracks(false));
+  ensemble.add("b", two_tracks(true));
   ensemble.step(position(1.0, 0.0));
   for (const int track : {0, 1}) {
     ASSERT_NE(ensemble.record(0, track), nullptr);

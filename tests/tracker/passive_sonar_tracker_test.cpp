@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/fakes.hpp"
 #include "tests/support/frequency_runs.hpp"
 #include "truebearing/filter/interacting_multiple_model.hpp"
 #include "truebearing/filter/kalman.hpp"
@@ -18,30 +19,18 @@ using Kind = TrackEvent::Kind;
 constexpr double kHandOver_s = 320.0;
 
 // Stands in for a batch estimator: says the truth, known to 100 m, 0.1 m/s and 10 mHz, from `known_s` on.
-class Oracle final : public Tracker {
- public:
-  Oracle(Recording recording, double known_s) : recording_(std::move(recording)), known_s_(known_s) {
-    record_.space = &plane_frequency_space();
-  }
-  std::span<const StepRecord> step(const Measurement& measurement) override {
-    while (recording_.measurements[next_].time_s < measurement.time_s) ++next_;
-    record_.time_s = measurement.time_s;
-    record_.sensor = measurement.sensor;
-    record_.status = measurement.time_s >= known_s_ ? StepStatus::ok : StepStatus::unobservable;
-    record_.x = recording_.truth[0].x[next_];
-    record_.P = Eigen::Vector<double, 5>(1e4, 1e4, 1e-2, 1e-2, 1e-4).asDiagonal();
-    return {&record_, 1};
-  }
-  void reset() override { next_ = 0; }
-  std::unique_ptr<Tracker> fresh() const override { return std::make_unique<Oracle>(recording_, known_s_); }
-  const StateSpace& space() const override { return plane_frequency_space(); }
-
- private:
-  Recording recording_;
-  double known_s_;
-  std::size_t next_ = 0;
-  StepRecord record_;
-};
+testing::FakeTracker oracle_of(const Recording& recording, double known_s) {
+  const Eigen::Vector<double, 5> variances(1e4, 1e4, 1e-2, 1e-2, 1e-4);
+  const auto say = [=](const Measurement& measurement, std::size_t, testing::FakeTracker::Said& said) {
+    std::size_t now = 0;
+    while (recording.measurements[now].time_s < measurement.time_s) ++now;
+    said.records.push_back(
+        testing::fake_record(plane_frequency_space(), measurement, recording.truth[0].x[now], variances.asDiagonal()));
+    said.records.back().sensor = measurement.sensor;
+    said.records.back().status = measurement.time_s >= known_s ? StepStatus::ok : StepStatus::unobservable;
+  };
+  return {plane_frequency_space(), say};
+}
 
 std::unique_ptr<TrackedState> two_levels() {
   InteractingMultipleModel::Modes modes;
@@ -55,7 +44,7 @@ PassiveSonarTracker sonar(const Recording& recording, PassiveSonarOptions option
                           const StateSpace& space = plane_frequency_space(), double known_s = 0.0) {
   options.hand_over_s = kHandOver_s;
   options.sensor = kFrequencySensor;
-  return {options, std::make_unique<Oracle>(recording, known_s),
+  return {options, std::make_unique<testing::FakeTracker>(oracle_of(recording, known_s)),
           std::make_unique<FilterTracker>(space, two_levels(), sensor_of(kFrequencySensor), HandOverStart{})};
 }
 
@@ -77,7 +66,7 @@ double last_frequency_error_hz(Tracker& tracker, const Recording& recording) {
 TEST(PassiveSonarTracker, HandsOverAtItsTimeAndGoesOnFromThere) {
   const Recording recording = frequency_run(1);
   PassiveSonarTracker tracker = sonar(recording);
-  Oracle oracle(recording, 0.0);
+  testing::FakeTracker oracle = oracle_of(recording, 0.0);
   for (const Measurement& measurement : recording.measurements) {
     const auto records = tracker.step(measurement);
     ASSERT_EQ(records.size(), 1u);

@@ -14,6 +14,7 @@ namespace truebearing {
 namespace {
 
 using testing::error_message;
+using testing::FakeScenario;
 using ::testing::HasSubstr;
 using testing::kNaN;
 using testing::RadarFilter;
@@ -36,38 +37,15 @@ CorrectionSpec spec(std::size_t runs) {
   return made;
 }
 
-// A scenario with another truth, or none, beside the same measurements.
-class OtherTruth final : public Scenario {
- public:
-  OtherTruth(const Scenario& scenario, double offset, double from_step = 0)
-      : scenario_(scenario), offset_(offset), from_(from_step) {}
-  Recording simulate(const RunKey& key) const override {
-    Recording recording = scenario_.simulate(key);
-    for (std::size_t k = 0; k < recording.truth[0].x.size(); ++k)
-      if (static_cast<double>(k) >= from_) recording.truth[0].x[k].array() += offset_;
-    return recording;
-  }
-  const StateSpace& truth_space() const override { return scenario_.truth_space(); }
-
- private:
-  const Scenario& scenario_;
-  double offset_;
-  double from_;
-};
-
-class KeysSeen final : public Scenario {
- public:
-  explicit KeysSeen(const Scenario& scenario) : scenario_(scenario) {}
-  Recording simulate(const RunKey& key) const override {
-    keys.insert({static_cast<std::uint64_t>(key.role), key.seed, key.run});
-    return scenario_.simulate(key);
-  }
-  const StateSpace& truth_space() const override { return scenario_.truth_space(); }
-  mutable std::set<std::vector<std::uint64_t>> keys;
-
- private:
-  const Scenario& scenario_;
-};
+// The scenario with another truth, or none, beside the same measurements.
+FakeScenario other_truth(const Scenario& scenario, double offset, std::size_t from_step = 0) {
+  return {scenario.truth_space(), [&scenario, offset, from_step](const RunKey& key) {
+            Recording recording = scenario.simulate(key);
+            for (std::size_t k = from_step; k < recording.truth[0].x.size(); ++k)
+              recording.truth[0].x[k].array() += offset;
+            return recording;
+          }};
+}
 
 TEST(Teacher, RowsAreTruthMinusTheBaseStepByStep) {
   const LineScenario scenario = testing::radar_family(12);
@@ -106,7 +84,7 @@ TEST(Teacher, RowsAreTruthMinusTheBaseStepByStep) {
 TEST(Teacher, FeaturesDoNotDependOnTheTruth) {
   const LineScenario scenario = testing::radar_family(30);
   const TeacherSet set = collect_teacher_set(ensemble(), spec(5), scenario, {});
-  const TeacherSet other = collect_teacher_set(ensemble(), spec(5), OtherTruth(scenario, 1e6), {});
+  const TeacherSet other = collect_teacher_set(ensemble(), spec(5), other_truth(scenario, 1e6), {});
   EXPECT_EQ(set.X, other.X);
   EXPECT_EQ(set.covariance_factors, other.covariance_factors);
   EXPECT_NE(set.Y, other.Y);
@@ -114,10 +92,10 @@ TEST(Teacher, FeaturesDoNotDependOnTheTruth) {
 
 TEST(Teacher, StepsWithUnknownTruthAreLeftOut) {
   const LineScenario scenario = testing::radar_family(30);
-  const TeacherSet set = collect_teacher_set(ensemble(), spec(4), OtherTruth(scenario, kNaN, 20), {});
+  const TeacherSet set = collect_teacher_set(ensemble(), spec(4), other_truth(scenario, kNaN, 20), {});
   EXPECT_EQ(set.X.rows(), 4 * 20);
   EXPECT_TRUE(set.Y.allFinite());
-  EXPECT_THAT(error_message([&] { collect_teacher_set(ensemble(), spec(4), OtherTruth(scenario, kNaN), {}); }),
+  EXPECT_THAT(error_message([&] { collect_teacher_set(ensemble(), spec(4), other_truth(scenario, kNaN), {}); }),
               HasSubstr("no step"));
 }
 
@@ -156,15 +134,20 @@ TEST(Teacher, RowsAreTheSameForAnyNumberOfThreads) {
 
 TEST(Teacher, DrawsItsOwnRoleOnly) {
   const LineScenario scenario = testing::radar_family(5);
-  const KeysSeen training(scenario), validation(scenario);
-  collect_teacher_set(ensemble(), spec(10), training,
-                      {.seed = 3, .role = Role::training, .threads = 1, .progress = {}});
-  collect_teacher_set(ensemble(), spec(10), validation,
-                      {.seed = 3, .role = Role::validation, .threads = 1, .progress = {}});
-  EXPECT_EQ(training.keys.size(), 10u);
-  for (const auto& key : training.keys) {
+  const auto keys_of = [&](Role role) {
+    std::set<std::vector<std::uint64_t>> keys;
+    const FakeScenario watched(scenario.truth_space(), [&](const RunKey& key) {
+      keys.insert({static_cast<std::uint64_t>(key.role), key.seed, key.run});
+      return scenario.simulate(key);
+    });
+    collect_teacher_set(ensemble(), spec(10), watched, {.seed = 3, .role = role, .threads = 1, .progress = {}});
+    return keys;
+  };
+  const auto training = keys_of(Role::training), validation = keys_of(Role::validation);
+  EXPECT_EQ(training.size(), 10u);
+  for (const auto& key : training) {
     EXPECT_EQ(key[0], static_cast<std::uint64_t>(Role::training));
-    EXPECT_FALSE(validation.keys.contains(key));
+    EXPECT_FALSE(validation.contains(key));
   }
 }
 
@@ -172,13 +155,13 @@ TEST(Teacher, DrawsItsOwnRoleOnly) {
 TeacherSet teach(const testing::AnglesOfTracks& told, const Recording& recording,
                  const std::vector<std::pair<std::string, double>>& leave_out_beyond = {}) {
   Ensemble ensemble;
-  ensemble.add("told", std::make_unique<testing::ToldTracker>(told));
+  ensemble.add("told", testing::told_tracker(told));
   CorrectionSpec correction;
   correction.design.base = correction.design.reference = correction.design.covariance_of = "told";
   correction.design.features = {{.kind = FeatureKind::log_step}, {.kind = FeatureKind::log_mean_nis, .offset = 1.0}};
   correction.training.runs = 2;
   correction.training.leave_out_beyond = leave_out_beyond;
-  return collect_teacher_set(ensemble, correction, testing::AngleScenario(recording), {});
+  return collect_teacher_set(ensemble, correction, FakeScenario(recording), {});
 }
 
 void expect_labels(const TeacherSet& set, const std::vector<double>& wanted_deg) {
@@ -217,36 +200,24 @@ TEST(Teacher, LeavesOutStepsWithErrorsBeyondTheLimit) {
 }
 
 TEST(Teacher, TruthMayHaveMoreThanTheBase) {
-  // The truth of a line, in another order and with a bias that the base knows nothing of.
-  class Longer final : public Scenario {
-   public:
-    explicit Longer(const Scenario& scenario) : scenario_(scenario) {}
-    Recording simulate(const RunKey& key) const override {
-      Recording recording = scenario_.simulate(key);
-      recording.truth_space = &truth_space();
-      for (BoundedVector& x : recording.truth[0].x) x = BoundedVector(Eigen::Vector3d(x[1], 77.0, x[0]));
-      return recording;
-    }
-    const StateSpace& truth_space() const override {
-      return state_space_of_components({"velocity_mps", "bias_m", "position_m"});
-    }
-
-   private:
-    const Scenario& scenario_;
-  };
   const LineScenario scenario = testing::radar_family(12);
   const TeacherSet set = collect_teacher_set(ensemble(), spec(3), scenario, {});
-  const TeacherSet longer = collect_teacher_set(ensemble(), spec(3), Longer(scenario), {});
+  // The truth of a line, in another order and with a bias that the base knows nothing of.
+  const StateSpace& space = state_space_of_components({"velocity_mps", "bias_m", "position_m"});
+  const FakeScenario with_bias(space, [&](const RunKey& key) {
+    Recording recording = scenario.simulate(key);
+    recording.truth_space = &space;
+    for (BoundedVector& x : recording.truth[0].x) x = BoundedVector(Eigen::Vector3d(x[1], 77.0, x[0]));
+    return recording;
+  });
+  const TeacherSet longer = collect_teacher_set(ensemble(), spec(3), with_bias, {});
   ASSERT_EQ(longer.Y.cols(), 2);
   EXPECT_EQ(longer.Y, set.Y);
 }
 
 TEST(Teacher, TruthOfAnotherSpaceIsRefused) {
-  class PlaneTruth final : public Scenario {
-    Recording simulate(const RunKey&) const override { return {}; }
-    const StateSpace& truth_space() const override { return plane_space(); }
-  };
-  EXPECT_THAT(error_message([] { collect_teacher_set(ensemble(), spec(1), PlaneTruth(), {}); }), HasSubstr("plane"));
+  const FakeScenario plane(plane_space(), [](const RunKey&) { return Recording(); });
+  EXPECT_THAT(error_message([&] { collect_teacher_set(ensemble(), spec(1), plane, {}); }), HasSubstr("plane"));
 }
 
 }  // namespace

@@ -6,7 +6,8 @@
 #include <span>
 
 #include "truebearing/core/error.hpp"
-#include "truebearing/evaluation/event_metrics.hpp"
+#include "truebearing/evaluation/batch_metrics.hpp"
+#include "truebearing/evaluation/time_steps.hpp"
 
 namespace truebearing {
 
@@ -66,10 +67,11 @@ Comparison summarise_sets(const TrackerSet& trackers, const std::vector<Scorer>&
     for (const BoundAtTimes& bound : set.bound) bounds.push_back(&bound);
     for (const AngleVariances& bound : set.angle_bound) angle_bounds.push_back(&bound);
   }
+  const auto runs_of = [&](std::size_t i) { return TrackerRuns{options.scoring, scorers[i], by_tracker[i]}; };
   for (std::size_t i = 0; i < scorers.size(); ++i) {
     comparison.trackers.push_back(
         summarise(trackers.name(static_cast<int>(i)), scorers[i], by_tracker[i], options.scoring));
-    comparison.trackers.back().metrics = time_metrics(scorers[i], by_tracker[i], options.scoring);
+    comparison.trackers.back().metrics = metrics_of(runs_of(i));
   }
 
   const auto index_of = [&](const std::string& name) {
@@ -80,11 +82,6 @@ Comparison summarise_sets(const TrackerSet& trackers, const std::vector<Scorer>&
   const auto add_metrics = [](TrackerSummary& summary, const std::vector<Metric>& metrics) {
     summary.metrics.insert(summary.metrics.end(), metrics.begin(), metrics.end());
   };
-  for (std::size_t i = 0; i < scorers.size(); ++i)
-    for (const std::vector<Metric>& metrics :
-         {event_metrics(scorers[i], by_tracker[i]), track_metrics(scorers[i], by_tracker[i], options.scoring),
-          gospa_metrics(by_tracker[i], options.scoring)})
-      add_metrics(comparison.trackers[i], metrics);
   if (options.angle_bound) comparison.angle_bounds = summarise_angle_bounds(angle_bounds);
   if (options.cramer_rao) {
     comparison.cramer_rao = summarise_bound(bounds, options.scoring.times_s);
@@ -98,10 +95,10 @@ Comparison summarise_sets(const TrackerSet& trackers, const std::vector<Scorer>&
   }
   for (const auto& [a, b] : options.pairs) {
     const std::size_t ia = index_of(a), ib = index_of(b);
-    comparison.pairs.push_back(
-        {a, b, paired_difference(scorers[ia], by_tracker[ia], scorers[ib], by_tracker[ib]),
-         timed_differences(scorers[ia], by_tracker[ia], scorers[ib], by_tracker[ib], options.scoring),
-         clean_differences(scorers[ia], by_tracker[ia], scorers[ib], by_tracker[ib])});
+    Comparison::Pair& pair = comparison.pairs.emplace_back(
+        Comparison::Pair{a, b, paired_difference(scorers[ia], by_tracker[ia], scorers[ib], by_tracker[ib])});
+    for (PairedDifference& difference : paired_differences(runs_of(ia), runs_of(ib)))
+      pair.differences.push_back(std::move(difference));
   }
   return comparison;
 }

@@ -10,8 +10,6 @@
 #include "truebearing/evaluation/bound_summary.hpp"
 #include "truebearing/evaluation/monte_carlo.hpp"
 #include "truebearing/evaluation/summary.hpp"
-#include "truebearing/evaluation/time_metrics.hpp"
-#include "truebearing/evaluation/track_metrics.hpp"
 #include "truebearing/simulation/scenario.hpp"
 
 namespace truebearing {
@@ -39,9 +37,7 @@ struct Comparison {
   std::vector<TrackerSummary> trackers;
   struct Pair {
     std::string a, b;
-    std::vector<PairedDifference> differences;
-    std::vector<TimedDifference> at_times;
-    std::vector<CleanDifference> clean = {};  ///< where the scoring asks for tracks
+    std::vector<PairedDifference> differences;  ///< of the RMSE; then of the metric families
   };
   std::vector<Pair> pairs;
   std::vector<std::string> bounds;

@@ -19,4 +19,8 @@ std::string name_of(const std::string& quantity) {
   return quantity.substr(0, quantity.rfind('_'));
 }
 
+std::string title_of(const std::string& quantity) {
+  return fmt::format("{} {}", name_of(quantity), unit_of(quantity));
+}
+
 }  // namespace truebearing

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "truebearing/evaluation/pair_table.hpp"
 #include "truebearing/evaluation/text_table.hpp"
 #include "truebearing/evaluation/time_table.hpp"
 #include "truebearing/evaluation/track_table.hpp"
@@ -177,15 +178,8 @@ std::string phase_table(const Comparison& comparison) {
 std::string tables(const Comparison& comparison) {
   std::vector<std::vector<std::string>> rows{heading(comparison)};
   for (const TrackerSummary& summary : comparison.trackers) rows.push_back(table_row(comparison, summary));
-  std::string text = aligned(rows) + track_tables(comparison) + phase_table(comparison) + time_tables(comparison);
-  if (comparison.pairs.empty()) return text;
-  rows.assign(1, {"paired, per-run RMSE", "", "mean", "+-", "in standard errors"});
-  for (const Comparison::Pair& pair : comparison.pairs)
-    for (const PairedDifference& difference : pair.differences)
-      rows.push_back({pair.a + " - " + pair.b, name_of(difference.quantity) + " " + unit_of(difference.quantity),
-                      figure(difference.mean), figure(difference.se),
-                      difference.se > 0.0 ? fmt::format("{:+.1f}", difference.mean / difference.se) : "-"});
-  return text + "\n" + aligned(rows);
+  return aligned(rows) + track_tables(comparison) + phase_table(comparison) + time_tables(comparison) +
+         pair_table("paired, per-run RMSE", comparison, MetricTable::figures);
 }
 
 // What a comparison, or one set of it, has to say besides where it comes from.
@@ -213,14 +207,13 @@ void add_figures(const Comparison& comparison, Json& json) {
   for (const Comparison::Pair& pair : comparison.pairs) {
     Json& entry = json["paired"][pair.a + " - " + pair.b] = Json::object();
     for (const PairedDifference& difference : pair.differences)
-      entry[difference.quantity] = {{"mean", number(difference.mean)}, {"se", number(difference.se)}};
-    for (const CleanDifference& difference : pair.clean)
-      entry[name_of(difference, comparison)] = {{"mean", number(difference.mean)}, {"se", number(difference.se)}};
-    for (const TimedDifference& difference : pair.at_times)
-      entry["at_times"].push_back({{"quantity", difference.quantity},
-                                   {"time_s", difference.time_s},
-                                   {"mean", number(difference.mean)},
-                                   {"se", number(difference.se)}});
+      if (difference.time_s)
+        entry["at_times"].push_back({{"quantity", difference.quantity},
+                                     {"time_s", *difference.time_s},
+                                     {"mean", number(difference.mean)},
+                                     {"se", number(difference.se)}});
+      else
+        entry[difference.quantity] = {{"mean", number(difference.mean)}, {"se", number(difference.se)}};
   }
 }
 

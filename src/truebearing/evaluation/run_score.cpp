@@ -2,24 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "truebearing/core/error.hpp"
-#include "truebearing/evaluation/gospa.hpp"
 #include "truebearing/evaluation/target_record.hpp"
+#include "truebearing/evaluation/time_steps.hpp"
 
 namespace truebearing {
 namespace {
-
-constexpr double kNotScored = std::numeric_limits<double>::quiet_NaN();
-
-void check_target_motion(const Recording& recording) {
-  const auto has_sensor = [](const Measurement& measurement) { return measurement.sensor.has_value(); };
-  if (!recording.truth_space || !begins_in_plane(*recording.truth_space) ||
-      std::none_of(recording.measurements.begin(), recording.measurements.end(), has_sensor))
-    throw InputError("scoring.target_motion", "has no own ship to be relative to, or no truth in the plane",
-                     "measurements with own-ship columns");
-}
 
 // Scores the records of one tracker in one run as they come.
 class RunScorer {
@@ -29,33 +18,28 @@ class RunScorer {
     const std::size_t steps = recording.measurements.size(), targets = recording.truth.size();
     scorer.prepare(score_, steps, targets);
     take_phases(steps);
-    if (targets == 1) score_.turns_at_s = recording.truth.front().turns_at_s;
-    for (const int at : steps_at(recording, rule.times_s)) score_.at_times.push_back({.step = at});
-    if (rule.tracks) followed_ = scorer.quantity(rule.tracks->quantity);
-    if (followed_) truth_.assign(steps * targets, kNotScored), estimates_ = truth_;
-    if (rule.gospa) assigned_ = scorer.quantity(rule.gospa->quantity);
-    if (assigned_) score_.gospa.emplace();
+    score_.time_steps = steps_at(recording, rule.times_s);
+    for (const std::shared_ptr<const MetricFamily>& family : rule.families)
+      if (auto figures = family->begin({rule, scorer, recording, score_.time_steps}))
+        figures_.push_back(std::move(figures));
+    if (rule.assignment) assigned_ = scorer.quantity(rule.assignment->quantity);
   }
 
   void take(std::size_t step, std::span<const StepRecord> records) {
     match(step, records);
-    for (std::size_t target = 0; target < matched_.size(); ++target) {
-      const BoundedVector& truth = recording_.truth[target].x[step];
-      const std::size_t place = target * recording_.measurements.size() + step;
-      if (followed_) truth_[place] = scorer_.true_value(*followed_, truth);
-      if (!matched_[target]) continue;
-      const StepRecord& record = *matched_[target];
-      scorer_.score_step(truth, record, place, score_);
-      if (followed_) estimates_[place] = scorer_.estimated_value(*followed_, record.x);
-      for (TimeScore& at : score_.at_times)
-        if (at.step == static_cast<int>(step))
-          at.take(truth, record, recording_.measurements[step].sensor, rule_.target_motion);
-    }
+    for (std::size_t target = 0; target < matched_.size(); ++target)
+      if (matched_[target])
+        scorer_.score_step(recording_.truth[target].x[step], *matched_[target],
+                           target * recording_.measurements.size() + step, score_);
+    for (const std::unique_ptr<RunFigures>& figures : figures_)
+      figures->take({step, matched_, assigned_ ? &assignment_ : nullptr});
   }
 
   RunScore finish(std::span<const TrackEvent> events) {
-    score_.events.assign(events.begin(), events.end());
-    if (followed_) score_.tracks = track_outcome(truth_, estimates_, matched_.size(), *rule_.tracks);
+    for (std::unique_ptr<RunFigures>& figures : figures_) {
+      figures->end(events);
+      score_.figures.push_back(std::move(figures));
+    }
     return std::move(score_);
   }
 
@@ -96,26 +80,21 @@ class RunScorer {
       estimated_values.push_back(value);
       tracks.push_back(&record);
     }
-    const Gospa found = gospa(true_values, estimated_values, rule_.gospa->cutoff);
+    assignment_ = gospa(true_values, estimated_values, rule_.assignment->cutoff);
     std::fill(matched_.begin(), matched_.end(), nullptr);
     for (std::size_t i = 0; i < targets.size(); ++i)
-      if (found.track_of[i] >= 0) matched_[targets[i]] = tracks[static_cast<std::size_t>(found.track_of[i])];
-    GospaSum& sum = *score_.gospa;
-    sum.squared += found.squared(rule_.gospa->cutoff);
-    sum.localisation += found.localisation;
-    sum.missed += found.missed;
-    sum.false_tracks += found.false_tracks;
-    sum.steps += 1.0;
+      if (const int track = assignment_.track_of[i]; track >= 0)
+        matched_[targets[i]] = tracks[static_cast<std::size_t>(track)];
   }
 
   const Scorer& scorer_;
   const Recording& recording_;
   const ScoringRule& rule_;
   RunScore score_;
+  std::vector<std::unique_ptr<RunFigures>> figures_;
   std::vector<const StepRecord*> matched_;  // [target], of this step
-  std::optional<std::size_t> followed_;     // the quantity of rule.tracks
-  std::optional<std::size_t> assigned_;     // the quantity of rule.gospa
-  std::vector<double> truth_, estimates_;   // [target * steps + step] of the one that is followed
+  std::optional<std::size_t> assigned_;     // the quantity of rule.assignment
+  Gospa assignment_;                        // of this step, where there is one
 };
 
 void check_targets(const Recording& recording, const ScoringRule& rule) {
@@ -131,7 +110,6 @@ void check_targets(const Recording& recording, const ScoringRule& rule) {
 std::vector<RunScore> score_recording(TrackerSet& trackers, const std::vector<Scorer>& scorers,
                                       const Recording& recording, const ScoringRule& rule) {
   check_targets(recording, rule);
-  if (rule.target_motion) check_target_motion(recording);
   std::vector<RunScorer> runs;
   for (const Scorer& scorer : scorers) runs.emplace_back(scorer, recording, rule);
 

@@ -53,6 +53,12 @@ Estimate pooled_rmse(const std::vector<SquaredErrors>& runs) {
   return pooled(runs, root_mean);
 }
 
+Estimate rmse_of(const std::vector<double>& errors) {
+  std::vector<SquaredErrors> runs;
+  for (const double error : errors) runs.emplace_back().add(error);
+  return pooled_rmse(runs);
+}
+
 Estimate pooled_mse(const std::vector<SquaredErrors>& runs) {
   return pooled(runs, mean_square);
 }

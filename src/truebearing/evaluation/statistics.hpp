@@ -33,7 +33,9 @@ struct Estimate {
 /// RMSE pooled over runs. Its standard error is the jackknife, one run left out at a time (Efron and Stein 1981); runs
 /// without errors are passed over.
 Estimate pooled_rmse(const std::vector<SquaredErrors>& runs);
-/// The same without the root.
+/// Of one error per run.
+Estimate rmse_of(const std::vector<double>& errors);
+/// As pooled_rmse, without the root.
 Estimate pooled_mse(const std::vector<SquaredErrors>& runs);
 
 /// Mean of independent values.

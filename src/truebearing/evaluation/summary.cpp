@@ -151,7 +151,8 @@ std::vector<PairedDifference> paired_difference(const Scorer& scorer_a, const st
         if (!std::isnan(value)) values.push_back(value);
       }
       const Estimate mean = mean_of(values);
-      differences.push_back({scorer_a.quantities()[qa], mean.value, mean.se});
+      const std::string& quantity = scorer_a.quantities()[qa];
+      differences.push_back({quantity, mean.value, mean.se, title_of(quantity)});
     }
   return differences;
 }

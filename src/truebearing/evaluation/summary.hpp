@@ -51,13 +51,7 @@ SquaredErrors squared_errors_in(const RunScore& score, std::size_t quantity, int
 /// How many phases the runs tell apart.
 int phase_count(const std::vector<const RunScore*>& scores);
 
-struct PairedDifference {
-  std::string quantity;
-  double mean = 0.0;  ///< over runs, of the difference of the two runs' RMSE
-  double se = 0.0;    ///< its standard error
-};
-
-/// a - b, for the quantities that both have.
+/// a - b of the RMSE, for the quantities that both have.
 std::vector<PairedDifference> paired_difference(const Scorer& scorer_a, const std::vector<const RunScore*>& a,
                                                 const Scorer& scorer_b, const std::vector<const RunScore*>& b);
 

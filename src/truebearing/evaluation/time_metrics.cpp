@@ -4,173 +4,117 @@
 #include <cmath>
 
 #include "truebearing/core/chi_square.hpp"
+#include "truebearing/evaluation/run_score.hpp"
 #include "truebearing/evaluation/statistics.hpp"
 
 namespace truebearing {
 namespace {
 
-using Runs = std::vector<const RunScore*>;
-
 // One run's value at the time of that number, NaN where it has none.
 double error_at(const RunScore& run, std::size_t quantity, std::size_t time) {
-  const int step = run.at_times[time].step;
+  const int step = run.time_steps[time];
   return step < 0 ? std::nan("") : run.error[quantity][static_cast<std::size_t>(step)];
 }
 
 double nees_at(const RunScore& run, std::size_t time) {
-  const int step = run.at_times[time].step;
+  const int step = run.time_steps[time];
   return step < 0 ? std::nan("") : run.nees[static_cast<std::size_t>(step)];
 }
 
-template <typename Value>
-std::vector<double> finite(const Runs& runs, const Value& value) {
-  std::vector<double> values;
-  for (const RunScore* run : runs)
-    if (const double v = value(*run); std::isfinite(v)) values.push_back(v);
-  return values;
-}
-
-Estimate rmse(const std::vector<double>& errors) {
-  std::vector<SquaredErrors> runs;
-  for (const double error : errors) runs.emplace_back().add(error);
-  return pooled_rmse(runs);
-}
-
+// The figures of one tracker at one time.
 class TimeFigures {
  public:
-  TimeFigures(const Scorer& scorer, const Runs& runs, const ScoringRule& rule)
-      : scorer_(scorer), runs_(runs), rule_(rule) {}
+  TimeFigures(const TrackerRuns& runs, std::size_t time) : runs_(runs), time_(time) {}
 
-  std::vector<Metric> all() {
-    for (time_ = 0; time_ < rule_.times_s.size(); ++time_) {
-      add_quantities();
-      add_consistency();
-      if (rule_.target_motion) add_target_motion();
+  void add_quantities(std::vector<Metric>& metrics) const {
+    const std::vector<std::string>& quantities = runs_.scorer.quantities();
+    for (std::size_t q = 0; q < quantities.size(); ++q) {
+      const std::string name = name_of(quantities[q]), unit = unit_of(quantities[q]);
+      const std::vector<double> errors = finite([&](const RunScore& run) { return error_at(run, q, time_); });
+      add(metrics, name + "_rmse", unit, rmse_of(errors));
+      add(metrics, name + "_median", unit, {median_of(errors), std::nan("")}, MetricTable::none);
     }
-    if (rule_.target_motion) add_time_to_20_percent();
-    add_batch();
-    return std::move(metrics_);
+  }
+
+  void add_consistency(std::vector<Metric>& metrics) const {
+    const std::vector<double> nees = finite([&](const RunScore& run) { return nees_at(run, time_); });
+    const double quantile = chi_square_quantile(0.95, runs_.scorer.dimension());
+    add(metrics, "nees", "1", mean_of(nees), MetricTable::none);
+    std::vector<double> covered;
+    for (const double value : nees) covered.push_back(value <= quantile ? 1.0 : 0.0);
+    add(metrics, "coverage95", "share", share_of(covered), MetricTable::none);
+    const auto is_missing = [&](const RunScore& run) { return !std::isfinite(error_at(run, 0, time_)); };
+    add(metrics, "missing_share", "share", share_of(counted(is_missing)), MetricTable::none);
+    if (runs_.rule.loss_thresholds.empty()) return;
+    add(metrics, "loss_rate", "share", share_of(counted([&](const RunScore& run) { return is_lost(run); })));
   }
 
  private:
-  void add(std::string name, std::string unit, Estimate figure) {
-    metrics_.push_back({std::move(name), std::move(unit), rule_.times_s[time_], figure.value, figure.se});
+  void add(std::vector<Metric>& metrics, std::string name, std::string unit, Estimate figure,
+           MetricTable table = MetricTable::figures) const {
+    metrics.push_back({std::move(name), std::move(unit), runs_.rule.times_s[time_], figure.value, figure.se, table});
   }
 
-  void add_quantities() {
-    for (std::size_t q = 0; q < scorer_.quantities().size(); ++q) {
-      const std::string name = name_of(scorer_.quantities()[q]), unit = unit_of(scorer_.quantities()[q]);
-      const std::vector<double> errors = finite(runs_, [&](const RunScore& run) { return error_at(run, q, time_); });
-      add(name + "_rmse", unit, rmse(errors));
-      add(name + "_median", unit, {median_of(errors), std::nan("")});
+  template <typename Value>
+  std::vector<double> finite(const Value& value) const {
+    std::vector<double> values;
+    for (const RunScore* run : runs_.scores)
+      if (const double v = value(*run); std::isfinite(v)) values.push_back(v);
+    return values;
+  }
+
+  // 1 for a run that `is`, 0 for another that counts.
+  template <typename Is>
+  std::vector<double> counted(const Is& is) const {
+    return finite([&](const RunScore& run) { return run.time_steps[time_] < 0 ? std::nan("") : is(run) ? 1.0 : 0.0; });
+  }
+
+  bool is_lost(const RunScore& run) const {
+    for (const auto& [name, threshold] : runs_.rule.loss_thresholds)
+      if (const auto q = runs_.scorer.quantity(name); q && !(error_at(run, *q, time_) <= threshold)) return true;
+    return false;
+  }
+
+  const TrackerRuns& runs_;
+  std::size_t time_;
+};
+
+class TimeMetrics final : public MetricFamily {
+ public:
+  std::vector<Metric> finish(const TrackerRuns& runs) const override {
+    std::vector<Metric> metrics;
+    for (std::size_t time = 0; time < runs.rule.times_s.size(); ++time) {
+      const TimeFigures figures(runs, time);
+      figures.add_quantities(metrics);
+      figures.add_consistency(metrics);
     }
+    return metrics;
   }
 
-  void add_consistency() {
-    const std::vector<double> nees = finite(runs_, [&](const RunScore& run) { return nees_at(run, time_); });
-    const double quantile = chi_square_quantile(0.95, scorer_.dimension());
-    add("nees", "1", mean_of(nees));
-    std::vector<double> covered;
-    for (const double value : nees) covered.push_back(value <= quantile ? 1.0 : 0.0);
-    add("coverage95", "share", share_of(covered));
-    // 1 for a run that is missing or lost, 0 for another that counts.
-    const auto counted = [&](const auto& is) {
-      return finite(runs_, [&](const RunScore& run) {
-        return run.at_times[time_].step < 0 ? std::nan("") : is(run) ? 1.0 : 0.0;
-      });
-    };
-    const auto is_missing = [&](const RunScore& run) { return !std::isfinite(error_at(run, 0, time_)); };
-    add("missing_share", "share", share_of(counted(is_missing)));
-    if (rule_.loss_thresholds.empty()) return;
-    const auto is_lost = [&](const RunScore& run) {
-      for (const auto& [name, threshold] : rule_.loss_thresholds)
-        for (std::size_t q = 0; q < scorer_.quantities().size(); ++q)
-          if (scorer_.quantities()[q] == name && !(error_at(run, q, time_) <= threshold)) return true;
-      return false;
-    };
-    add("loss_rate", "share", share_of(counted(is_lost)));
-  }
-
-  void add_target_motion() {
-    const auto errors = [&](double TargetMotionError::*part) {
-      return finite(runs_, [&](const RunScore& run) { return run.at_times[time_].motion.*part; });
-    };
-    std::vector<double> range = errors(&TargetMotionError::range_percent);
-    const Estimate mean = mean_of(range);
-    add("range_error_mean", "percent", mean);
-    add("range_error_std", "percent", standard_deviation_of(range));
-    add("range_error_rmse", "percent", rmse(range));
-    for (double& error : range) error = std::abs(error);
-    add("range_error_median", "percent", {median_of(std::move(range)), std::nan("")});
-    add("course_error_rmse", "deg", rmse(errors(&TargetMotionError::course_deg)));
-    add("speed_error_rmse", "m/s", rmse(errors(&TargetMotionError::speed_mps)));
-    if (!time_to_20_s_ && std::abs(mean.value) <= 20.0) time_to_20_s_ = rule_.times_s[time_];
-  }
-
-  void add_time_to_20_percent() {
-    metrics_.push_back({"time_to_20_percent", "s", std::nullopt, time_to_20_s_.value_or(std::nan("")), std::nan("")});
-  }
-
-  void add_batch() {
-    std::vector<double> non_finite, iterations;
-    for (const RunScore* run : runs_)
-      for (const TimeScore& at : run->at_times)
-        if (at.batch) {
-          non_finite.push_back(at.batch->non_finite_starts);
-          iterations.push_back(at.batch->iterations);
+  std::vector<PairedDifference> paired(const TrackerRuns& a, const TrackerRuns& b) const override {
+    std::vector<PairedDifference> differences;
+    for (std::size_t qa = 0; qa < a.scorer.quantities().size(); ++qa) {
+      const std::string& quantity = a.scorer.quantities()[qa];
+      const std::optional<std::size_t> qb = b.scorer.quantity(quantity);
+      if (!qb) continue;
+      for (std::size_t time = 0; time < a.rule.times_s.size(); ++time) {
+        std::vector<double> values;
+        for (std::size_t run = 0; run < a.scores.size(); ++run) {
+          const double value = error_at(*a.scores[run], qa, time) - error_at(*b.scores[run], *qb, time);
+          if (std::isfinite(value)) values.push_back(value);
         }
-    if (non_finite.empty()) return;
-    metrics_.push_back({"non_finite_starts", "1", std::nullopt, mean_of(non_finite).value, std::nan("")});
-    metrics_.push_back({"iterations", "1", std::nullopt, mean_of(iterations).value, std::nan("")});
+        const Estimate mean = mean_of(values);
+        differences.push_back({quantity, mean.value, mean.se, title_of(quantity), a.rule.times_s[time]});
+      }
+    }
+    return differences;
   }
-
-  const Scorer& scorer_;
-  const Runs& runs_;
-  const ScoringRule& rule_;
-  std::size_t time_ = 0;
-  std::vector<Metric> metrics_;
-  std::optional<double> time_to_20_s_;
 };
 
 }  // namespace
 
-std::vector<Metric> time_metrics(const Scorer& scorer, const Runs& scores, const ScoringRule& rule) {
-  if (rule.times_s.empty()) return {};
-  return TimeFigures(scorer, scores, rule).all();
-}
-
-std::vector<Metric> global_minimum_share(const Runs& scores, const Runs& reference) {
-  double solved = 0.0, compared = 0.0, found = 0.0;
-  for (std::size_t run = 0; run < scores.size(); ++run)
-    for (std::size_t time = 0; time < scores[run]->at_times.size(); ++time) {
-      const auto& other = scores[run]->at_times[time].batch;
-      const auto& best = reference[run]->at_times[time].batch;
-      solved += other.has_value();
-      if (!best) continue;
-      compared += 1.0;
-      found += other && other->cost <= best->cost * (1.0 + 1e-6) + 1e-6;
-    }
-  if (solved == 0.0 || compared == 0.0) return {};
-  return {{"global_minimum_share", "share", std::nullopt, found / compared, std::nan("")}};
-}
-
-std::vector<TimedDifference> timed_differences(const Scorer& scorer_a, const Runs& a, const Scorer& scorer_b,
-                                               const Runs& b, const ScoringRule& rule) {
-  std::vector<TimedDifference> differences;
-  for (std::size_t qa = 0; qa < scorer_a.quantities().size(); ++qa)
-    for (std::size_t qb = 0; qb < scorer_b.quantities().size(); ++qb) {
-      if (scorer_a.quantities()[qa] != scorer_b.quantities()[qb]) continue;
-      for (std::size_t time = 0; time < rule.times_s.size(); ++time) {
-        std::vector<double> values;
-        for (std::size_t run = 0; run < a.size(); ++run) {
-          const double value = error_at(*a[run], qa, time) - error_at(*b[run], qb, time);
-          if (std::isfinite(value)) values.push_back(value);
-        }
-        const Estimate mean = mean_of(values);
-        differences.push_back({scorer_a.quantities()[qa], rule.times_s[time], mean.value, mean.se});
-      }
-    }
-  return differences;
+std::shared_ptr<const MetricFamily> time_metrics() {
+  return std::make_shared<TimeMetrics>();
 }
 
 }  // namespace truebearing

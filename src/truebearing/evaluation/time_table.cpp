@@ -11,12 +11,6 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-// What is printed of the figures at times: the rest is for programs.
-bool is_printed(const std::string& name) {
-  return name.ends_with("_rmse") || name == "range_error_mean" || name == "range_error_std" ||
-         name == "range_efficiency" || name == "loss_rate";
-}
-
 // Those metrics of all trackers that `belongs` picks, each name once, in the order in which they first come.
 template <typename Belongs>
 std::vector<Metric> kinds(const Comparison& comparison, const Belongs& belongs) {
@@ -67,11 +61,12 @@ void add_block(const Comparison& comparison, const Metric& kind, Rows& rows) {
 // "a - b, position" by time: the mean difference, and how many of its standard errors that is.
 void add_pairs(const Comparison& comparison, Rows& rows) {
   for (const Comparison::Pair& pair : comparison.pairs) {
-    std::string quantity;
-    for (const TimedDifference& difference : pair.at_times) {
-      if (quantity != difference.quantity) {
-        quantity = difference.quantity;
-        rows.push_back({fmt::format("  {} - {}, {} {}", pair.a, pair.b, name_of(quantity), unit_of(quantity))});
+    std::string title;
+    for (const PairedDifference& difference : pair.differences) {
+      if (!difference.time_s) continue;
+      if (title != difference.title) {
+        title = difference.title;
+        rows.push_back({fmt::format("  {} - {}, {}", pair.a, pair.b, title)});
       }
       rows.back().push_back(difference.se > 0.0
                                 ? fmt::format("{} ({:+.1f})", figure(difference.mean), difference.mean / difference.se)
@@ -86,8 +81,8 @@ std::string time_tables(const Comparison& comparison) {
   std::string text;
   Rows rows;
   std::vector<double> times_s;
-  for (const Metric& kind :
-       kinds(comparison, [](const Metric& metric) { return metric.time_s && is_printed(metric.name); })) {
+  const auto has_place = [](const Metric& metric) { return metric.table == MetricTable::figures; };
+  for (const Metric& kind : kinds(comparison, [&](const Metric& m) { return m.time_s && has_place(m); })) {
     add_block(comparison, kind, rows);
     if (times_s.empty()) times_s = times_of(comparison, kind.name);
   }
@@ -98,8 +93,7 @@ std::string time_tables(const Comparison& comparison) {
   add_pairs(comparison, rows);
   if (rows.size() > 1) text.append("\n").append(aligned(rows));
 
-  const std::vector<Metric> timeless =
-      kinds(comparison, [](const Metric& metric) { return !metric.time_s && !is_track_metric(metric.name); });
+  const std::vector<Metric> timeless = kinds(comparison, [&](const Metric& m) { return !m.time_s && has_place(m); });
   if (timeless.empty()) return text;
   rows.assign(1, {"tracker"});
   for (const Metric& kind : timeless) rows.back().push_back(title(kind));

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <vector>
 
+#include "truebearing/evaluation/pair_table.hpp"
 #include "truebearing/evaluation/text_table.hpp"
 
 namespace truebearing {
@@ -26,7 +27,7 @@ std::vector<Metric> columns_of(const Comparison& comparison) {
   std::vector<Metric> columns;
   for (const TrackerSummary& summary : comparison.trackers)
     for (const Metric& metric : summary.metrics)
-      if (is_track_metric(metric.name) && !find(columns, metric.name)) columns.push_back(metric);
+      if (metric.table == MetricTable::tracks && !find(columns, metric.name)) columns.push_back(metric);
   return columns;
 }
 
@@ -88,32 +89,11 @@ std::string bound_rows(const Comparison& comparison) {
   return fmt::format("\n{}", aligned(rows));
 }
 
-std::string phase_name(const CleanDifference& difference, const Comparison& comparison) {
-  const auto phase = static_cast<std::size_t>(difference.phase);
-  return phase < comparison.phases.size() ? comparison.phases[phase] : fmt::format("phase {}", phase + 1);
-}
-
-std::string pair_rows(const Comparison& comparison) {
-  Rows rows{{"paired, per-run MSE of runs clean with both", "", "mean", "+-", "in standard errors"}};
-  for (const Comparison::Pair& pair : comparison.pairs)
-    for (const CleanDifference& difference : pair.clean) {
-      std::string what = fmt::format("{} {}", name_of(difference.quantity), squared_unit_of(difference.quantity));
-      if (difference.phase >= 0) what += fmt::format(", {}", phase_name(difference, comparison));
-      rows.push_back({pair.a + " - " + pair.b, what, figure(difference.mean), figure(difference.se),
-                      difference.se > 0.0 ? fmt::format("{:+.1f}", difference.mean / difference.se) : "-"});
-    }
-  return rows.size() > 1 ? fmt::format("\n{}", aligned(rows)) : std::string();
-}
-
 }  // namespace
 
 std::string track_tables(const Comparison& comparison) {
-  return tracker_rows(comparison) + bound_rows(comparison) + pair_rows(comparison);
-}
-
-std::string name_of(const CleanDifference& difference, const Comparison& comparison) {
-  const std::string name = difference.quantity + "2_clean";
-  return difference.phase < 0 ? name : name + "_" + phase_name(difference, comparison);
+  return tracker_rows(comparison) + bound_rows(comparison) +
+         pair_table("paired, per-run MSE of runs clean with both", comparison, MetricTable::tracks);
 }
 
 }  // namespace truebearing

@@ -11,7 +11,4 @@ namespace truebearing {
 /// with an empty line before it; empty where the comparison has no such figures.
 std::string track_tables(const Comparison& comparison);
 
-/// What the results call a difference of clean runs: "angle_deg2_clean", "angle_deg2_clean_crossing".
-std::string name_of(const CleanDifference& difference, const Comparison& comparison);
-
 }  // namespace truebearing

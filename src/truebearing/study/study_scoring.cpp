@@ -3,8 +3,9 @@
 #include <algorithm>
 
 #include "truebearing/core/suggestion.hpp"
+#include "truebearing/evaluation/metric_registry.hpp"
 #include "truebearing/simulation/line_array_scenario.hpp"
-#include "truebearing/study/track_scoring.hpp"
+#include "truebearing/study/angle_bound_scoring.hpp"
 
 namespace truebearing {
 namespace {
@@ -44,8 +45,8 @@ StudyScoring read_study_scoring(TableReader scoring, const std::vector<std::stri
         throw scoring.error("pairs", "holds \"" + pair + "\"", "\"a - b\" with names of trackers");
       read.pairs.emplace_back(known("pairs", pair.substr(0, dash)), known("pairs", pair.substr(dash + 3)));
     }
+  read_metrics(scoring, truth, read.rule);
   read.timed = read_timed_scoring(scoring, truth, read.rule);
-  read_track_scoring(scoring, truth, read.rule);
   read.angle_bound = read_angle_bound(scoring, truth);
   if (read.angle_bound)
     for (const NamedScenario& scenario : compared) check_angle_bound(scoring, scenario);

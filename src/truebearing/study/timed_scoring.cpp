@@ -1,8 +1,5 @@
 #include "truebearing/study/timed_scoring.hpp"
 
-#include <algorithm>
-#include <functional>
-
 #include "truebearing/core/angle.hpp"
 #include "truebearing/study/range_prior_configuration.hpp"
 
@@ -25,20 +22,13 @@ TargetMotionBound read_bound(TableReader table) {
 
 }  // namespace
 
-TimedScoring read_timed_scoring(TableReader& scoring, const StateSpace& truth, ScoringRule& rule) {
+TimedScoring read_timed_scoring(TableReader& scoring, const StateSpace& truth, const ScoringRule& rule) {
   TimedScoring timed;
-  if (scoring.has("times_s")) {
-    rule.times_s = scoring.numbers("times_s", -1, kNonNegative);
-    if (std::adjacent_find(rule.times_s.begin(), rule.times_s.end(), std::greater_equal<>()) != rule.times_s.end())
-      throw scoring.error("times_s", "do not increase", "times in ascending order, each once");
-  }
-  rule.target_motion = scoring.boolean_or("target_motion", false);
   if (scoring.has("global_minimum")) timed.global_minimum = scoring.text("global_minimum");
   if (auto bound = scoring.table_if_present("bound")) timed.cramer_rao = read_bound(std::move(*bound));
-  for (const char* key : {"target_motion", "bound"})
-    if (scoring.has(key) && !begins_in_plane(truth))
-      throw scoring.error(key, "is of a target in the plane, and the scenario's truth is " + truth.name);
-  for (const char* key : {"target_motion", "global_minimum", "bound"})
+  if (scoring.has("bound") && !begins_in_plane(truth))
+    throw scoring.error("bound", "is of a target in the plane, and the scenario's truth is " + truth.name);
+  for (const char* key : {"global_minimum", "bound"})
     if (scoring.has(key) && rule.times_s.empty())
       throw scoring.error(key, "stands without times_s", "a key times_s beside it");
   return timed;

@@ -1,6 +1,4 @@
-// The part of a study's table [scoring] that asks for figures at given times:
-//   times_s = [280.0, ...]                ascending
-//   target_motion = true                  with errors in range, course and speed, relative to own ship
+// The keys of a study's table [scoring] that compare its figures at given times with what can be reached:
 //   global_minimum = "ml_225"             the batch tracker whose costs the others' are compared with
 //   bound = { kind = "cramer_rao", prior = { kind = "range", ... }, q_m2ps3, bearing_sigma_deg }
 //                                         all but the kind optional: range_prior_configuration.hpp has the prior's keys
@@ -19,7 +17,7 @@ struct TimedScoring {
   std::optional<TargetMotionBound> cramer_rao;
 };
 
-/// Asks for the keys above; times_s and target_motion go to `rule`. `truth` is the space of the scenario's.
-TimedScoring read_timed_scoring(TableReader& scoring, const StateSpace& truth, ScoringRule& rule);
+/// Asks for the keys above. `truth` is the space of the scenario's; `rule` has the times.
+TimedScoring read_timed_scoring(TableReader& scoring, const StateSpace& truth, const ScoringRule& rule);
 
 }  // namespace truebearing

@@ -1,16 +1,8 @@
-#include "truebearing/evaluation/time_score.hpp"
+#include "truebearing/evaluation/time_steps.hpp"
 
 #include <algorithm>
 
 namespace truebearing {
-
-void TimeScore::take(const BoundedVector& truth, const StepRecord& record, const std::optional<SensorState>& own_ship,
-                     bool target_motion) {
-  // A corrected record has the outcome of its base, which is shown by itself.
-  if (!record.correction) batch = record.batch;
-  if (!target_motion || !own_ship || !begins_in_plane(*record.space)) return;
-  motion = target_motion_error(truth.head<4>(), record.x.head<4>(), *own_ship);
-}
 
 std::vector<int> steps_at(const Recording& recording, const std::vector<double>& times_s) {
   constexpr double kRounding_s = 1e-6;

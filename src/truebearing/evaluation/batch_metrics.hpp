@@ -1,0 +1,24 @@
+// Figures of batch estimators (tma/) at the times of a scoring rule: how they came to their estimates. Their names and
+// definitions are those of the README.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "truebearing/evaluation/metric_family.hpp"
+
+namespace truebearing {
+
+struct BatchFigures : RunFigures {
+  std::vector<std::optional<BatchOutcome>> at_times;  ///< [time] of the rule, of one that solved at its step
+};
+
+/// non_finite_starts and iterations, of a tracker that solved at any time of any run.
+std::shared_ptr<const MetricFamily> batch_metrics();
+
+/// Share of runs and times, of those at which `reference` solved, at which `scores` of another batch estimator came to
+/// a cost as low, but for rounding. Nothing where either never solved.
+std::vector<Metric> global_minimum_share(const std::vector<const RunScore*>& scores,
+                                         const std::vector<const RunScore*>& reference);
+
+}  // namespace truebearing

@@ -1,0 +1,33 @@
+#include "truebearing/study/correction_spec.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/error_message.hpp"
+#include "tests/support/radar_study.hpp"
+#include "truebearing/study/study.hpp"
+
+namespace truebearing {
+namespace {
+
+using testing::error_message;
+using ::testing::HasSubstr;
+
+TEST(CorrectionSpec, StepsLeftOutOfTrainingAreOfAQuantityOfTheTruth) {
+  const testing::TemporaryFolder folder;
+  const auto loaded = [&](const std::string& limit) {
+    const std::string from = "[trackers.nfnn.training]\n";
+    return Study::load(testing::write_study(
+        folder, testing::replaced(testing::kStudy, from, from + "leave_out_beyond = { " + limit + " }\n")));
+  };
+  const Study study = loaded("position_m = 9000.0, velocity_mps = 300");
+  const auto& limits = study.tracker("nfnn").correction->training.leave_out_beyond;
+  const std::vector<std::pair<std::string, double>> wanted{{"position_m", 9000.0}, {"velocity_mps", 300.0}};
+  EXPECT_EQ(limits, wanted);
+  EXPECT_THAT(error_message([&] { loaded("angle_deg = 3.0"); }),
+              HasSubstr("trackers.nfnn.training.leave_out_beyond.angle_deg"));
+  EXPECT_THAT(error_message([&] { loaded("position_m = -3.0"); }), HasSubstr("leave_out_beyond.position_m"));
+}
+
+}  // namespace
+}  // namespace truebearing

@@ -126,8 +126,8 @@ void bank(benchmark::State& state) {
   for (int velocity_mps = -375; velocity_mps <= 375; velocity_mps += 50)
     for (std::size_t s = 0; s < sensors.size(); ++s)
       for (std::size_t m = 0; m < motions.size(); ++m) {
-        hypotheses.push_back({Eigen::Vector2d(0.0, velocity_mps),
-                              Eigen::Vector2d(1e6, 484.0).asDiagonal().toDenseMatrix(), s});
+        hypotheses.push_back(
+            {Eigen::Vector2d(0.0, velocity_mps), Eigen::Vector2d(1e6, 484.0).asDiagonal().toDenseMatrix(), s});
         motion_of.push_back(m);
       }
   FilterBank filters(line_space(), std::make_unique<FilterGroupOf<KalmanFilter<2>>>(motions, motion_of),

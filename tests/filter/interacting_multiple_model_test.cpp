@@ -48,7 +48,9 @@ std::unique_ptr<InteractingMultipleModel> unequal_modes(double sigma_a, double q
   return imm;
 }
 
-Vector1 measured(RandomStream& random, double position) { return Vector1(position + 5.0 * random.normal()); }
+Vector1 measured(RandomStream& random, double position) {
+  return Vector1(position + 5.0 * random.normal());
+}
 
 StepStatus take(TrackedState& state, const Vector1& z, StateUpdate& update) {
   return state.update(ErasedMeasurement<Position<1>>(kSensor, z, true), update);
@@ -200,8 +202,7 @@ TEST(InteractingMultipleModel, FailureLeavesAllAsItWas) {
   const Eigen::Vector2d x = imm->x();
   const Eigen::Matrix2d P = imm->P();
   const BoundedVector mu = (*imm->mode_probabilities());
-  for (const double z : {std::nan(""), 1e200})
-    EXPECT_EQ(take(*imm, Vector1(z)), StepStatus::failed) << z;
+  for (const double z : {std::nan(""), 1e200}) EXPECT_EQ(take(*imm, Vector1(z)), StepStatus::failed) << z;
   EXPECT_EQ(imm->predict(std::nan("")), StepStatus::failed);
   EXPECT_EQ(imm->x(), x);
   EXPECT_EQ(imm->P(), P);

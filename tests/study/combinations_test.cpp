@@ -54,8 +54,8 @@ struct MeasurementCase {
 const std::vector<MeasurementCase> kMeasurements{
     {"position_line", R"({ model = "position", sigma_m = 10.0 })", "line", 1, false, false},
     {"position", R"({ model = "position", sigma_m = 10.0 })", "plane", 2, false, false},
-    {"range_bearing", R"({ model = "range_bearing", range_sigma_m = 10.0, bearing_sigma_deg = 0.1 })", "plane", 2, false,
-     false},
+    {"range_bearing", R"({ model = "range_bearing", range_sigma_m = 10.0, bearing_sigma_deg = 0.1 })", "plane", 2,
+     false, false},
     {"converted", R"({ model = "converted_range_bearing", range_sigma_m = 10.0, bearing_sigma_deg = 0.1 })", "plane", 2,
      false, false},
     {"bearing", R"({ model = "bearing", bearing_sigma_deg = 0.2 })", "plane", 2, true, false},
@@ -72,7 +72,7 @@ struct Combination {
   MotionLayout layout() const { return {measurement.dimensions, measurement.frequency, 1e-6, 1.0}; }
 };
 
-const std::vector<std::string> kLinearFilters{"kalman", "square_root", "conventional", "unscented",
+const std::vector<std::string> kLinearFilters{"kalman", "square_root",   "conventional", "unscented",
                                               "imm",    "imm_unscented", "bank"};
 
 std::vector<Combination> combinations() {
@@ -188,8 +188,8 @@ Measurement measure(const MeasurementCase& c, const Eigen::VectorXd& x, int k, d
     m.z = BoundedVector::Constant(1, x[0] + noise * 10.0 * random.normal());
     return m;
   }
-  m.sensor = SensorState{{k % 20 < 10 ? 10.0 * (k % 20) : 10.0 * (20 - k % 20), 0.0},
-                         {k % 20 < 10 ? 10.0 : -10.0, 0.0}};
+  m.sensor =
+      SensorState{{k % 20 < 10 ? 10.0 * (k % 20) : 10.0 * (20 - k % 20), 0.0}, {k % 20 < 10 ? 10.0 : -10.0, 0.0}};
   const Eigen::Vector2d offset = x.head<2>() - m.sensor->position_m;
   const double range = offset.norm(), bearing = std::atan2(offset.x(), offset.y());
   if (c.name == "position") {
@@ -249,7 +249,9 @@ TEST_P(Combinations, RunsAndIsConsistent) {
 INSTANTIATE_TEST_SUITE_P(All, Combinations, ::testing::ValuesIn(combinations()),
                          [](const auto& tested) { return tested.param.name(); });
 
-TEST(CombinationTable, HasMoreThanSixty) { EXPECT_GE(combinations().size(), 60u); }
+TEST(CombinationTable, HasMoreThanSixty) {
+  EXPECT_GE(combinations().size(), 60u);
+}
 
 TEST(CombinationTable, NoiseThatIsNotTheFiltersIsCaught) {
   for (const MeasurementCase& measurement : kMeasurements) {
@@ -313,10 +315,10 @@ TEST(CombinationTable, RefusesWhatMakesNoSense) {
                                        "\nstart = { kind = \"range\", range_m = 1e4, range_sigma_m = 1e3, "
                                        "velocity_sigma_mps = 5.0 }\n"),
               ::testing::HasSubstr("5 components"));
-  EXPECT_THAT(refusal("imm", position + "modes = [" + kPlaneMotions[2].toml + ", " + kPlaneMotions[4].toml +
-                                 "]\ntransition = { leave_first = 0.1, leave_other = 0.1, period_s = 1.0 }\n" +
-                                 two_point),
-              ::testing::HasSubstr("no parts of one state"));
+  EXPECT_THAT(
+      refusal("imm", position + "modes = [" + kPlaneMotions[2].toml + ", " + kPlaneMotions[4].toml +
+                         "]\ntransition = { leave_first = 0.1, leave_other = 0.1, period_s = 1.0 }\n" + two_point),
+      ::testing::HasSubstr("no parts of one state"));
 }
 
 }  // namespace

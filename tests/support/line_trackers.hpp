@@ -52,8 +52,8 @@ inline std::unique_ptr<FilterBank> radar_bank(const std::vector<RadarFilter>& hy
     motions.push_back(erased(radar.motion()));
     motion_of.push_back(i);
     sensors.push_back(sensor_of(radar.sensor()));
-    priors.push_back({radar.x0, radar.variance.asDiagonal().toDenseMatrix(), i,
-                      log_weights.empty() ? 0.0 : log_weights[i]});
+    priors.push_back(
+        {radar.x0, radar.variance.asDiagonal().toDenseMatrix(), i, log_weights.empty() ? 0.0 : log_weights[i]});
   }
   return std::make_unique<FilterBank>(
       line_space(), std::make_unique<FilterGroupOf<KalmanFilter<2>>>(std::move(motions), std::move(motion_of)),

@@ -29,8 +29,7 @@ inline std::unique_ptr<Tracker> plane_imm() {
   modes.push_back(state_of<KalmanFilter<4>>(PlaneMotion{{1.0}}));
   modes.push_back(state_of<KalmanFilter<4>>(PlaneMotion{{30.0}}));
   return std::make_unique<FilterTracker>(
-      plane_space(),
-      std::make_unique<InteractingMultipleModel>(std::move(modes), star_chain(2, 0.05, 0.1, 1.0, 1.0)),
+      plane_space(), std::make_unique<InteractingMultipleModel>(std::move(modes), star_chain(2, 0.05, 0.1, 1.0, 1.0)),
       sensor_of(kPlaneSensor), TwoPointStart{});
 }
 

@@ -20,7 +20,7 @@ class AnyMeasurement {
   int leading() const { return leading_; }  ///< k: it looks at the first k components of a state
   /// z = x_1..m + v: H = [I, 0].
   bool is_position() const { return is_position_; }
-  Eigen::Map<const BoundedVector> value() const { return {z_, size_}; }               ///< z (m)
+  Eigen::Map<const BoundedVector> value() const { return {z_, size_}; }              ///< z (m)
   Eigen::Map<const BoundedMatrix> covariance() const { return {R_, size_, size_}; }  ///< R (m x m)
 
  protected:

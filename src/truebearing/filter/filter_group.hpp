@@ -132,8 +132,7 @@ class FilterGroupOf final : public FilterGroup {
   static double take(FilterState<Filter>& member, const AnyMeasurement& measurement) {
     const Update<N, M> update = member.updated(static_cast<const SizedMeasurement<M>&>(measurement));
     const double gained = -0.5 * (update.nis + log_determinant(update.S));
-    return update.status == StepStatus::ok && std::isfinite(gained) ? gained
-                                                                    : -std::numeric_limits<double>::infinity();
+    return update.status == StepStatus::ok && std::isfinite(gained) ? gained : -std::numeric_limits<double>::infinity();
   }
 
   std::vector<std::shared_ptr<const Motion>> motions_;

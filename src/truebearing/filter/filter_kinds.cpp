@@ -36,8 +36,8 @@ std::unique_ptr<TrackedState> one(const std::shared_ptr<const AnyMotion>& motion
 
 template <template <int> typename Filter, int kLeast = 2>
 std::unique_ptr<TrackedState> state(const std::shared_ptr<const AnyMotion>& motion) {
-  return by_length<kLeast, TrackedState>(
-      motion->states(), [&]<int N>(std::integral_constant<int, N>) { return one<Filter<N>>(motion); });
+  return by_length<kLeast, TrackedState>(motion->states(),
+                                         [&]<int N>(std::integral_constant<int, N>) { return one<Filter<N>>(motion); });
 }
 
 template <typename Filter>

@@ -29,10 +29,7 @@ class FilterState final : public TrackedState {
       : TrackedState(N), motion_(std::move(motion)), filter_(State::Zero(), Covariance::Identity()) {
     show();
   }
-  FilterState(const FilterState& other)
-      : TrackedState(N), motion_(other.motion_), filter_(other.filter_) {
-    show();
-  }
+  FilterState(const FilterState& other) : TrackedState(N), motion_(other.motion_), filter_(other.filter_) { show(); }
 
   void begin(const double* x, const double* P) override {
     filter_ = Filter(State(Eigen::Map<const State>(x)), Covariance(Eigen::Map<const Covariance>(P)));

@@ -27,11 +27,11 @@ class TrackedState {
 
   virtual ~TrackedState() = default;
 
-  int size() const { return size_; }                  ///< n
-  Vector x() const { return {x_, size_}; }            ///< (n)
-  Matrix P() const { return {P_, size_, size_}; }     ///< (n x n)
+  int size() const { return size_; }               ///< n
+  Vector x() const { return {x_, size_}; }         ///< (n)
+  Matrix P() const { return {P_, size_, size_}; }  ///< (n x n)
   const double* x_data() const { return x_; }
-  const double* P_data() const { return P_; }         ///< by columns
+  const double* P_data() const { return P_; }  ///< by columns
 
   /// Begins anew with x (n) and P (n x n, by columns).
   virtual void begin(const double* x, const double* P) = 0;

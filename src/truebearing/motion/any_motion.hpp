@@ -21,8 +21,7 @@ class AnyMotion {
   std::string_view rest() const { return rest_; }
 
  protected:
-  AnyMotion(int states, bool is_linear, std::string_view rest)
-      : states_(states), is_linear_(is_linear), rest_(rest) {}
+  AnyMotion(int states, bool is_linear, std::string_view rest) : states_(states), is_linear_(is_linear), rest_(rest) {}
   AnyMotion(const AnyMotion&) = default;
   AnyMotion& operator=(const AnyMotion&) = default;
 

@@ -9,7 +9,6 @@
 namespace truebearing {
 namespace {
 
-
 // Where the site is, for a track flown (4 x steps) from the origin.
 struct PlaceSite {
   const Eigen::Matrix4Xd& track;

@@ -10,19 +10,27 @@ namespace truebearing {
 
 namespace {
 
-double bearing_of(const Eigen::Vector4d& state) { return std::atan2(state.x(), state.y()); }
+double bearing_of(const Eigen::Vector4d& state) {
+  return std::atan2(state.x(), state.y());
+}
 
 const std::vector<PlanarOutput>& table() {
   static const std::vector<PlanarOutput> the_table{
-      {"plane", Measured::position(2), [](const Eigen::Vector4d& state) -> BoundedVector { return state.head<2>(); }, {}},
-      {"range", Measured::position(1),
+      {"plane",
+       Measured::position(2),
+       [](const Eigen::Vector4d& state) -> BoundedVector { return state.head<2>(); },
+       {}},
+      {"range",
+       Measured::position(1),
        [](const Eigen::Vector4d& state) -> BoundedVector { return BoundedVector::Constant(1, state.head<2>().norm()); },
        {}},
-      {"range_bearing", Measured::range_bearing(),
+      {"range_bearing",
+       Measured::range_bearing(),
        [](const Eigen::Vector4d& state) -> BoundedVector {
          return Eigen::Vector2d(state.head<2>().norm(), bearing_of(state));
        },
-       {"bearing_sigma_deg"}, 1},
+       {"bearing_sigma_deg"},
+       1},
   };
   return the_table;
 }

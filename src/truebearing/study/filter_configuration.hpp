@@ -5,7 +5,6 @@
 #include "truebearing/io/table_reader.hpp"
 #include "truebearing/study/measurement_kinds.hpp"
 #include "truebearing/tracker/filter_tracker.hpp"
-#include "truebearing/tracker/range_hypotheses.hpp"
 
 namespace truebearing {
 
@@ -21,8 +20,5 @@ FilterTrackerOptions read_options(TableReader& tracker, const MeasurementChoice&
 
 /// transition = { matrix = [...], period_s } row by row, or { leave_first, leave_other, to_first, period_s }; initial.
 MarkovChain read_chain(TableReader& tracker, int modes);
-
-/// start, ranges, velocity_cells, speed_between_mps, least_range_m.
-RangeHypotheses read_range_hypotheses(TableReader& tracker);
 
 }  // namespace truebearing

@@ -12,10 +12,9 @@
 #include "truebearing/study/filter_configuration.hpp"
 #include "truebearing/study/measurement_kinds.hpp"
 #include "truebearing/study/motion_kinds.hpp"
+#include "truebearing/study/range_prior_configuration.hpp"
 #include "truebearing/tracker/filter_bank.hpp"
 #include "truebearing/tracker/range_bank.hpp"
-#include "truebearing/tracker/raw_tracker.hpp"
-#include "truebearing/tracker/recorded_tracker.hpp"
 
 namespace truebearing {
 namespace {
@@ -42,8 +41,8 @@ std::unique_ptr<TrackedState> state_under(const TableReader& tracker, FilterKind
                                           const std::shared_ptr<const AnyMotion>& motion) {
   std::unique_ptr<TrackedState> state = make_filter_state(filter, motion);
   if (!state)
-    throw tracker.error("motion", fmt::format("has a state of {} components, which this filter does not take",
-                                              motion->states()),
+    throw tracker.error("motion",
+                        fmt::format("has a state of {} components, which this filter does not take", motion->states()),
                         filter == FilterKind::log_polar ? "constant_velocity or coordinated_turn" : "2 to 7");
   return state;
 }
@@ -85,13 +84,17 @@ std::unique_ptr<Tracker> make_kalman_tracker(TableReader& table) {
   return one_filter(table, FilterKind::kalman);
 }
 
-std::unique_ptr<Tracker> make_unscented_tracker(TableReader& table) { return one_filter(table, FilterKind::unscented); }
+std::unique_ptr<Tracker> make_unscented_tracker(TableReader& table) {
+  return one_filter(table, FilterKind::unscented);
+}
 
 std::unique_ptr<Tracker> make_modified_gain_tracker(TableReader& table) {
   return one_filter(table, FilterKind::modified_gain);
 }
 
-std::unique_ptr<Tracker> make_log_polar_tracker(TableReader& table) { return one_filter(table, FilterKind::log_polar); }
+std::unique_ptr<Tracker> make_log_polar_tracker(TableReader& table) {
+  return one_filter(table, FilterKind::log_polar);
+}
 
 std::unique_ptr<Tracker> make_multiple_model_tracker(TableReader& table) {
   MeasurementChoice measurement = read_measurement(table);
@@ -126,8 +129,7 @@ std::unique_ptr<Tracker> make_kalman_bank(TableReader& table) {
     motions.push_back(read_motion(table.table("motion"), layout));
   }
   std::vector<std::unique_ptr<AnySensor>> sensors;
-  for (const double factor : variance_factors)
-    sensors.push_back(read_measurement(table, std::sqrt(factor)).sensor);
+  for (const double factor : variance_factors) sensors.push_back(read_measurement(table, std::sqrt(factor)).sensor);
 
   TableReader start = table.table("start");
   start.choice_or("kind", {"prior"}, "prior");
@@ -158,26 +160,6 @@ std::unique_ptr<Tracker> make_range_bank(TableReader& table) {
       read_filter(table, measurement, true, {"kalman", "unscented", "log_polar", "modified_gain"});
   static_cast<void>(state_under(table, filter, motion));
   return range_bank(*measurement.space, filter, motion, std::move(measurement.sensor), hypotheses);
-}
-
-std::unique_ptr<Tracker> make_raw_tracker(TableReader& table) {
-  const std::vector<std::string> components = table.texts("components");
-  const std::vector<double> sigma = table.numbers("sigma", static_cast<int>(components.size()), kPositive);
-  if (components.size() > kMaxDimension) throw table.error("components", "are too many", "at most 8");
-  return std::make_unique<RawTracker>(
-      state_space_of_components(components),
-      BoundedVector(Eigen::Map<const Eigen::VectorXd>(sigma.data(), static_cast<Eigen::Index>(sigma.size()))));
-}
-
-std::unique_ptr<Tracker> make_recorded_tracker(TableReader& table) {
-  if (!table.has("file")) {
-    const std::vector<std::string> components = table.texts("components");
-    if (!table.has("innovation")) throw table.error("innovation", "is missing", "true or false, or a key `file`");
-    return std::make_unique<RecordedTracker>(state_space_of_components(components),
-                                             table.boolean_or("innovation", false));
-  }
-  const std::string file = table.text("file");
-  return std::make_unique<RecordedTracker>(read_step_log(table.resolve(file), table.text_or("tracker", "")));
 }
 
 }  // namespace truebearing

@@ -1,5 +1,4 @@
-// Makers of the trackers that the house brings: from a table of a study to a FilterTracker, a FilterBank, the raw
-// measurement or a recorded tracker. Their keys are in the README.
+// Makers of filter trackers: from a table of a study to a FilterTracker or a FilterBank. Their keys are in the README.
 #pragma once
 
 #include <memory>
@@ -16,7 +15,5 @@ std::unique_ptr<Tracker> make_log_polar_tracker(TableReader& table);
 std::unique_ptr<Tracker> make_multiple_model_tracker(TableReader& table);
 std::unique_ptr<Tracker> make_kalman_bank(TableReader& table);
 std::unique_ptr<Tracker> make_range_bank(TableReader& table);
-std::unique_ptr<Tracker> make_raw_tracker(TableReader& table);
-std::unique_ptr<Tracker> make_recorded_tracker(TableReader& table);
 
 }  // namespace truebearing

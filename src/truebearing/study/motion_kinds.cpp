@@ -75,8 +75,7 @@ std::shared_ptr<const AnyMotion> coordinated_turn(TableReader& motion, const Mot
 
 std::shared_ptr<const AnyMotion> turning_target(TableReader& motion, const MotionLayout& layout) {
   const double factor = layout.process_noise_factor;
-  const double wander =
-      radians(motion.number("turn_rate_noise_degps2", kNonNegative) * std::sqrt(factor));
+  const double wander = radians(motion.number("turn_rate_noise_degps2", kNonNegative) * std::sqrt(factor));
   return laid_out(TurningTarget<AnyNoise<4>>{read_noise<2>(motion, factor), wander}, layout, "turn rate");
 }
 

@@ -12,10 +12,10 @@ namespace truebearing {
 
 /// What the state of a motion is to have.
 struct MotionLayout {
-  int dimensions = 1;                   ///< 1 or 2
-  bool has_frequency = false;           ///< of a source, behind the velocities; in the plane only
-  double frequency_q_hz2ps = 0.0;       ///< its random walk
-  double process_noise_factor = 1.0;    ///< of the motion's process noise covariance, as hypotheses of a bank have it
+  int dimensions = 1;                 ///< 1 or 2
+  bool has_frequency = false;         ///< of a source, behind the velocities; in the plane only
+  double frequency_q_hz2ps = 0.0;     ///< its random walk
+  double process_noise_factor = 1.0;  ///< of the motion's process noise covariance, as hypotheses of a bank have it
 };
 
 /// { model, ... }: asks for all keys of `motion` and finishes it. Throws InputError.

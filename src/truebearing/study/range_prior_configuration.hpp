@@ -4,6 +4,7 @@
 
 #include "truebearing/io/table_reader.hpp"
 #include "truebearing/tma/range_prior.hpp"
+#include "truebearing/tracker/range_hypotheses.hpp"
 
 namespace truebearing {
 
@@ -15,5 +16,8 @@ namespace truebearing {
 ///     course = { from_bearing_deg, sigma_deg, speed_mps, speed_sigma_mps }   the last two not beside guess = true
 /// Asks for all keys of `table` and finishes it.
 RangePrior read_range_prior(TableReader table);
+
+/// Of a bank of filters on that belief: start, ranges, velocity_cells, speed_between_mps, least_range_m.
+RangeHypotheses read_range_hypotheses(TableReader& tracker);
 
 }  // namespace truebearing

@@ -10,6 +10,7 @@
 #include "truebearing/study/batch_trackers.hpp"
 #include "truebearing/study/filter_trackers.hpp"
 #include "truebearing/study/passive_sonar_configuration.hpp"
+#include "truebearing/study/unfiltered_trackers.hpp"
 
 namespace truebearing {
 namespace {

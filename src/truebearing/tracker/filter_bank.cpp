@@ -38,7 +38,9 @@ FilterBank::FilterBank(const StateSpace& space, std::unique_ptr<FilterGroup> gro
   reset();
 }
 
-FilterBank::Members FilterBank::another() const { return {members_.filters->fresh(), members_.log_weights}; }
+FilterBank::Members FilterBank::another() const {
+  return {members_.filters->fresh(), members_.log_weights};
+}
 
 std::span<const StepRecord> FilterBank::step(const Measurement& measurement) {
   const StreamGuard::Verdict verdict = guard_.examine(measurement, sensors_.front()->has_value(measurement));

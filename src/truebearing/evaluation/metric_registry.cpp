@@ -14,7 +14,7 @@ namespace truebearing {
 using ReadFamily = std::shared_ptr<const MetricFamily>(TableReader& scoring, const StateSpace& truth,
                                                        ScoringRule& rule);
 // Each is defined in the family's own file.
-ReadFamily read_target_motion, read_tracks, read_gospa;
+ReadFamily read_target_motion, read_tracks, read_gospa, read_peak_error;
 
 namespace {
 
@@ -30,9 +30,10 @@ std::shared_ptr<const MetricFamily> always(TableReader&, const StateSpace&, Scor
 
 // In the order of the results.
 constexpr Entry kFamilies[] = {
-    {"", always<time_metrics>},  {"target_motion", read_target_motion},
-    {"", always<batch_metrics>}, {"", always<event_metrics>},
-    {"tracks", read_tracks},     {"gospa", read_gospa},
+    {"", always<time_metrics>},      {"target_motion", read_target_motion},
+    {"", always<batch_metrics>},     {"", always<event_metrics>},
+    {"tracks", read_tracks},         {"gospa", read_gospa},
+    {"peak_error", read_peak_error},
 };
 
 }  // namespace

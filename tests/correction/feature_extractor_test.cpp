@@ -62,6 +62,20 @@ TEST(FeatureExtractor, LogStepCountsTheMeasurementsUsed) {
   EXPECT_EQ(feature(extractor, coasted()), 0.0) << "finite also before the first";
 }
 
+TEST(FeatureExtractor, LogIntervalIsSinceTheLastMeasurementUsed) {
+  FeatureExtractor extractor = extractor_of({{.kind = FeatureKind::log_interval}});
+  const auto at = [&](StepRecord record, double time_s) {
+    record.time_s = time_s;
+    return feature(extractor, record);
+  };
+  EXPECT_EQ(at(step(0.0, 1.0), 10.0), std::log(1e-3)) << "the track begins";
+  EXPECT_EQ(at(step(0.0, 1.0), 12.0), std::log(2.0));
+  EXPECT_EQ(at(coasted(), 15.0), std::log(3.0));
+  EXPECT_EQ(at(coasted(), 17.0), std::log(5.0)) << "nothing was used in between";
+  EXPECT_EQ(at(step(0.0, 1.0), 20.0), std::log(8.0));
+  EXPECT_EQ(at(step(0.0, 1.0), 21.0), std::log(1.0));
+}
+
 TEST(FeatureExtractor, GainIsThatOfItsComponent) {
   FeatureExtractor position = extractor_of({{.kind = FeatureKind::gain, .component = "position_m"}});
   FeatureExtractor velocity = extractor_of({{.kind = FeatureKind::gain, .component = "velocity_mps"}});

@@ -150,6 +150,11 @@ void FeatureExtractor::remember(Term& term, const StepRecord& record) {
     case FeatureKind::log_mean_nis:
       memory[0] += (innovation.nis - memory[0]) / term.used;
       break;
+    case FeatureKind::log_interval: {  // the times of the last two
+      const double before_s = memory[0];
+      memory = Eigen::Vector2d(record.time_s, before_s);
+      break;
+    }
     case FeatureKind::speed_change:
     case FeatureKind::velocity_change: {
       BoundedVector now = record.x.tail<2>();
@@ -182,7 +187,7 @@ void FeatureExtractor::remember(Term& term, const StepRecord& record) {
 
 double FeatureExtractor::value(const Term& term, const StepRecord& base, const StepRecord* companion) const {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  constexpr double kLeastSpeed_mps = 1e-3, kLeastTime_s = 1.0;
+  constexpr double kLeastSpeed_mps = 1e-3, kLeastTime_s = 1.0, kLeastInterval_s = 1e-3;
   if (term.companion >= 0 && !companion) return kNaN;
   const StepRecord& record = companion ? *companion : base;
   if (record.x.size() != base.x.size()) return kNaN;
@@ -254,6 +259,11 @@ double FeatureExtractor::value(const Term& term, const StepRecord& base, const S
       return base.neighbour ? base.neighbour->closeness : 0.0;
     case FeatureKind::neighbour_difference:
       return base.neighbour ? base.neighbour->closeness * scaled(in_frame(base.neighbour->difference)) : 0.0;
+    case FeatureKind::log_interval: {
+      const bool uses = base.status == StepStatus::ok && base.innovation;
+      const double last_s = term.used > (uses ? 1.0 : 0.0) ? term.memory[uses ? 1 : 0] : began_s_;
+      return std::log(std::max(base.time_s - last_s, kLeastInterval_s));
+    }
   }
   return kNaN;
 }

@@ -34,8 +34,9 @@ enum class FeatureKind {
                  ///< mode; plane space
   velocity_change,  ///< (v - m)[component] / scale, m <- m + alpha mu[mode] (v - m): against the velocity before; plane
                     ///< space
-  neighbour_closeness,  ///< how near the nearest other target is, in (0, 1]; 0 where the tracker follows no other
-  neighbour_difference  ///< closeness (x_neighbour[component] - x[component]) / scale; 0 where there is no other
+  neighbour_closeness,   ///< how near the nearest other target is, in (0, 1]; 0 where the tracker follows no other
+  neighbour_difference,  ///< closeness (x_neighbour[component] - x[component]) / scale; 0 where there is no other
+  log_interval           ///< ln of the time from the last used measurement before this step to this step, at least 1 ms
 };
 
 /// What a feature of this kind reads beside the state.
@@ -205,6 +206,7 @@ inline constexpr std::array kFeatureRows{
                "difference of the neighbour in {component}",
                FeatureMirror::by_component,
                {.component = kComponent, .scale = true, .blocks = kNeighbour}},
+    FeatureRow{FeatureKind::log_interval, "log_interval", "ln interval", FeatureMirror::even, {.blocks = kInnovation}},
 };
 
 }  // namespace detail

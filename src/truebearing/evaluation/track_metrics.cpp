@@ -111,8 +111,8 @@ class TrackMetrics final : public MetricFamily {
         std::string name = quantity + "2_clean";
         std::string title = fmt::format("{} {}", name_of(quantity), squared_unit_of(quantity));
         if (phase >= 0) {
-          name += "_" + phase_name(a, phase);
-          title += ", " + phase_name(a, phase);
+          name += fmt::format("_{}", phase_name(a, phase));
+          title += fmt::format(", {}", phase_name(a, phase));
         }
         differences.push_back(
             {std::move(name), mean.value, mean.se, std::move(title), std::nullopt, MetricTable::tracks});

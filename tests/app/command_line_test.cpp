@@ -8,6 +8,7 @@
 #include "tests/app/program.hpp"
 #include "tests/support/array_recording.hpp"
 #include "tests/support/flight_study.hpp"
+#include "truebearing/io/json_file.hpp"
 #include "truebearing/recording/recording_csv.hpp"
 #include "truebearing/recording/snapshot_log.hpp"
 #include "truebearing/tracker/step_log.hpp"
@@ -179,6 +180,53 @@ TEST(Program, TracksWhatItSimulated) {
 }
 
 // A track in the plane begins before its filter has an innovation, which the columns must hold all the same.
+// Range, bearing and range rate of a Doppler radar, from a scenario to a comparison and a track, by three filters.
+TEST(Program, FollowsWhatADopplerRadarMeasures) {
+  const TemporaryFolder folder;
+  folder.write("scenario.toml", R"(kind = "planar_legs"
+output = "range_bearing_rate"
+period_s = 1.0
+target = { position_m = [8000.0, 12000.0], velocity_mps = [-60.0, 20.0] }
+legs = [{ duration_s = 30.0 }, { duration_s = 20.0, turn_rate_degps = 3.0 }, { duration_s = 30.0 }]
+sensor = { range_sigma_m = 30.0, bearing_sigma_deg = 0.3, range_rate_sigma_mps = 0.5 }
+)");
+  folder.write("study.toml", R"(name = "doppler"
+scenario = "scenario.toml"
+runs = 100
+scoring = { from_step = 10, pairs = ["imm - kalman"] }
+[trackers.kalman]
+kind = "kalman"
+motion = { model = "constant_velocity", noise = "discrete", sigma_a_mps2 = 2.0 }
+measurement = { model = "range_bearing_rate", range_sigma_m = 30.0, bearing_sigma_deg = 0.3, range_rate_sigma_mps = 0.5 }
+start = { kind = "two_point" }
+[trackers.unscented]
+like = "kalman"
+kind = "unscented"
+[trackers.imm]
+kind = "imm"
+measurement = { model = "range_bearing_rate", range_sigma_m = 30.0, bearing_sigma_deg = 0.3, range_rate_sigma_mps = 0.5 }
+start = { kind = "two_point" }
+modes = [
+  { model = "constant_velocity", noise = "discrete", sigma_a_mps2 = 0.5 },
+  { model = "coordinated_turn", noise = "discrete", sigma_a_mps2 = 1.0, turn_rates_degps = [-3.0, 3.0] },
+]
+transition = { leave_first = 0.04, leave_other = 0.1, to_first = 0.8, period_s = 1.0 }
+)");
+  const Outcome compared = run(folder, "compare study.toml --json result.json");
+  ASSERT_EQ(compared.status, 0) << compared.err;
+  const auto result = read_json_file(folder.path() / "result.json").at("trackers");
+  for (const char* name : {"kalman", "unscented", "imm"}) {
+    EXPECT_LT(result.at(name).at("rmse").at("position_m").get<double>(), 60.0) << name;
+    EXPECT_LT(result.at(name).at("rmse").at("velocity_mps").get<double>(), 12.0) << name;
+  }
+  EXPECT_LT(result.at("imm").at("rmse").at("velocity_mps").get<double>(),
+            result.at("kalman").at("rmse").at("velocity_mps").get<double>());
+  ASSERT_EQ(run(folder, "simulate scenario.toml -o logs").status, 0);
+  EXPECT_THAT(folder.read("logs/run_0000.csv"), HasSubstr("range_rate_mps"));
+  const Outcome tracked = run(folder, "track study.toml logs/run_0000.csv -o track.csv");
+  EXPECT_EQ(tracked.status, 0) << tracked.err;
+}
+
 TEST(Program, TrackWritesInnovationsWhole) {
   const TemporaryFolder folder;
   const std::string data = std::string(TRUEBEARING_SOURCE_DIR) + "/data/";

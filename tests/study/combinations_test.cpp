@@ -58,6 +58,9 @@ const std::vector<MeasurementCase> kMeasurements{
      false, false},
     {"converted", R"({ model = "converted_range_bearing", range_sigma_m = 10.0, bearing_sigma_deg = 0.1 })", "plane", 2,
      false, false},
+    {"range_bearing_rate",
+     R"({ model = "range_bearing_rate", range_sigma_m = 10.0, bearing_sigma_deg = 0.1, range_rate_sigma_mps = 0.5 })",
+     "plane", 2, false, false},
     {"bearing", R"({ model = "bearing", bearing_sigma_deg = 0.2 })", "plane", 2, true, false},
     {"bearing_frequency", R"({ model = "bearing_frequency", bearing_sigma_deg = 0.2, frequency_sigma_hz = 0.05 })",
      "plane_frequency", 2, true, true},
@@ -192,14 +195,17 @@ Measurement measure(const MeasurementCase& c, const Eigen::VectorXd& x, int k, d
       SensorState{{k % 20 < 10 ? 10.0 * (k % 20) : 10.0 * (20 - k % 20), 0.0}, {k % 20 < 10 ? 10.0 : -10.0, 0.0}};
   const Eigen::Vector2d offset = x.head<2>() - m.sensor->position_m;
   const double range = offset.norm(), bearing = std::atan2(offset.x(), offset.y());
-  if (c.name == "position") {
+  const double radial_mps = (x.segment<2>(2) - m.sensor->velocity_mps).dot(offset) / range;
+  if (c.name == "range_bearing_rate") {
+    m.z = Eigen::Vector3d(range + noise * 10.0 * random.normal(), bearing + noise * radians(0.1) * random.normal(),
+                          radial_mps + noise * 0.5 * random.normal());
+  } else if (c.name == "position") {
     m.z = x.head<2>() + noise * 10.0 * Eigen::Vector2d(random.normal(), random.normal());
   } else if (!c.bearings) {
     m.z = Eigen::Vector2d(range + noise * 10.0 * random.normal(), bearing + noise * radians(0.1) * random.normal());
   } else if (!c.frequency) {
     m.z = BoundedVector::Constant(1, bearing + noise * radians(0.2) * random.normal());
   } else {
-    const double radial_mps = (x.segment<2>(2) - m.sensor->velocity_mps).dot(offset) / range;
     m.z = Eigen::Vector2d(bearing + noise * radians(0.2) * random.normal(),
                           x[4] * (1.0 - radial_mps / 1500.0) + noise * 0.05 * random.normal());
   }

@@ -31,6 +31,14 @@ const std::vector<PlanarOutput>& table() {
        },
        {"bearing_sigma_deg"},
        1},
+      {"range_bearing_rate",
+       {"range_bearing_rate", {"range_m", "bearing_deg", "range_rate_mps"}},
+       [](const Eigen::Vector4d& state) -> BoundedVector {
+         const Eigen::Vector2d position = state.head<2>();
+         return Eigen::Vector3d(position.norm(), bearing_of(state), state.tail<2>().dot(position.stableNormalized()));
+       },
+       {"bearing_sigma_deg", "range_rate_sigma_mps"},
+       1},
   };
   return the_table;
 }

@@ -8,6 +8,7 @@
 #include "truebearing/tracker/bearing_sensor.hpp"
 #include "truebearing/tracker/plane_sensor.hpp"
 #include "truebearing/tracker/position_sensor.hpp"
+#include "truebearing/tracker/range_bearing_rate_sensor.hpp"
 
 namespace truebearing {
 namespace {
@@ -58,6 +59,13 @@ std::unique_ptr<AnySensor> read_converted(const Reading& reading) {
   return sensor_of(PlaneSensor{polar.sigma, polar.sigma_factor, true, polar.site_m});
 }
 
+std::unique_ptr<AnySensor> read_range_bearing_rate(const Reading& reading) {
+  const PolarSensor polar = read_polar(reading);
+  const double rate_sigma_mps = reading.table.number("range_rate_sigma_mps", kPositive);
+  return sensor_of(
+      RangeBearingRateSensor{{polar.sigma[0], polar.sigma[1], rate_sigma_mps}, polar.sigma_factor, polar.site_m});
+}
+
 std::unique_ptr<AnySensor> read_bearing(const Reading& reading) {
   const double sigma_rad = radians(reading.table.number("bearing_sigma_deg", kSigma_deg));
   return sensor_of(BearingSensor{sigma_rad, read_factor(reading)});
@@ -89,6 +97,7 @@ const std::vector<MeasurementKind>& kinds() {
       {"position", {"line", "plane"}, read_position},
       {"range_bearing", {"plane"}, read_range_bearing},
       {"converted_range_bearing", {"plane"}, read_converted},
+      {"range_bearing_rate", {"plane"}, read_range_bearing_rate},
       {"bearing", {"plane"}, read_bearing},
       {"bearing_frequency", {"plane_frequency", "plane"}, read_frequencies, true},
   };

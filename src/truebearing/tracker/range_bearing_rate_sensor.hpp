@@ -1,0 +1,40 @@
+// A Doppler radar's sensor: range, bearing and range rate (any_sensor.hpp), where the measurement says that it was, else
+// at site_m and at rest. The measurement's own standard deviations hold where it carries them, else the sensor's; either
+// is multiplied by sigma_factor.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "truebearing/measurement/measured.hpp"
+#include "truebearing/measurement/measurement.hpp"
+#include "truebearing/measurement/range_bearing_rate.hpp"
+#include "truebearing/tracker/start.hpp"
+
+namespace truebearing {
+
+struct RangeBearingRateSensor {
+  using Model = RangeBearingRate<>;
+  static constexpr bool kMeasuresPosition = false;
+
+  Eigen::Vector3d sigma{1.0, 1.0, 1.0};  ///< m, rad, m/s
+  double sigma_factor = 1.0;
+  Eigen::Vector2d site_m = Eigen::Vector2d::Zero();
+
+  Model model(const Measurement& measurement) const {
+    const SensorState from = measurement.sensor.value_or(SensorState{site_m, Eigen::Vector2d::Zero()});
+    const Eigen::Vector3d s =
+        sigma_factor * (measurement.sigma.size() == 3 ? Eigen::Vector3d(measurement.sigma) : sigma);
+    return {from.position_m, from.velocity_mps, s[0], s[1], s[2]};
+  }
+  Model::Vector value(const Measurement& measurement) const { return measurement.z; }
+  Measured measured() const { return {"range_bearing_rate", {"range_m", "bearing_deg", "range_rate_mps"}}; }
+  /// Range and bearing, converted without bias; the range rate tells no velocity across.
+  PositionFix fix(const Measurement& measurement) const {
+    const Model here = model(measurement);
+    const ConvertedPosition converted =
+        convert_range_bearing(measurement.z.head<2>(), here.sigma_range_m, here.sigma_bearing_rad, here.site_m);
+    return {converted.position_m, converted.R_m2};
+  }
+};
+
+}  // namespace truebearing

@@ -32,6 +32,7 @@ const std::vector<Kind> kLineMotions{
     {"constant_velocity", R"({ model = "constant_velocity", noise = "continuous", q_m2ps3 = 0.05 })"},
     {"constant_acceleration", R"({ model = "constant_acceleration", noise = "continuous", q_m2ps5 = 1e-5 })"},
     {"singer", R"({ model = "singer", sigma_a_mps2 = 0.1, time_constant_s = 20.0 })"},
+    {"constant_jerk", R"({ model = "constant_jerk", q_m2ps7 = 1e-9 })"},
 };
 const std::vector<Kind> kPlaneMotions{
     kLineMotions[0],

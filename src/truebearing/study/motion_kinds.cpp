@@ -9,6 +9,7 @@
 #include "truebearing/core/angle.hpp"
 #include "truebearing/filter/erased_motion.hpp"
 #include "truebearing/motion/constant_acceleration.hpp"
+#include "truebearing/motion/constant_jerk.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
 #include "truebearing/motion/coordinated_turn.hpp"
 #include "truebearing/motion/singer.hpp"
@@ -57,6 +58,11 @@ std::shared_ptr<const AnyMotion> constant_acceleration(TableReader& motion, cons
   return laid_out(ConstantAcceleration<D, DiscreteAccelerationStep>{noise}, layout, "accelerations");
 }
 
+std::shared_ptr<const AnyMotion> constant_jerk(TableReader& motion, const MotionLayout& layout) {
+  const double q = motion.number("q_m2ps7", kNonNegative) * layout.process_noise_factor;
+  return laid_out(ConstantJerk<1>{q}, layout, "accelerations");
+}
+
 template <int D>
 std::shared_ptr<const AnyMotion> singer(TableReader& motion, const MotionLayout& layout) {
   const double sigma = motion.number("sigma_a_mps2", kPositive) * std::sqrt(layout.process_noise_factor);
@@ -84,13 +90,14 @@ using Read = std::shared_ptr<const AnyMotion> (*)(TableReader& motion, const Mot
 struct MotionKind {
   const char* model;
   Read on_line;   ///< nullptr where there is none
-  Read in_plane;  ///< with a frequency or without
+  Read in_plane;  ///< with a frequency or without; nullptr where there is none
 };
 
 constexpr MotionKind kKinds[] = {
     {"constant_velocity", constant_velocity<1>, constant_velocity<2>},
     {"coordinated_turn", nullptr, coordinated_turn},
     {"constant_acceleration", constant_acceleration<1>, constant_acceleration<2>},
+    {"constant_jerk", constant_jerk, nullptr},  // eight states in the plane, more than are compiled
     {"singer", singer<1>, singer<2>},
     {"turning_target", nullptr, turning_target},
 };
@@ -113,7 +120,7 @@ void read_mode(TableReader& mode, const MotionLayout& layout, AnyMotions& motion
 std::shared_ptr<const AnyMotion> read_motion(TableReader motion, const MotionLayout& layout) {
   std::vector<std::string> models;
   for (const MotionKind& kind : kKinds)
-    if (layout.dimensions == 2 || kind.on_line) models.emplace_back(kind.model);
+    if (layout.dimensions == 1 ? kind.on_line : kind.in_plane) models.emplace_back(kind.model);
   const std::string model = motion.choice("model", models);
   for (const MotionKind& kind : kKinds) {
     if (model != kind.model) continue;

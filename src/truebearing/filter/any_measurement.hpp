@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include "truebearing/core/bounded.hpp"
 #include "truebearing/measurement/measurement_model.hpp"
 
@@ -69,36 +70,38 @@ class ErasedMeasurement final : public SizedMeasurement<Model::kMeasurements> {
  public:
   using typename SizedMeasurement<M>::Vector;
 
+  /// Of nothing yet: set() comes first.
+  explicit ErasedMeasurement(bool is_position) : SizedMeasurement<M>(Model::kStates, is_position) {}
   ErasedMeasurement(const Model& model, const Vector& value, bool is_position = false)
-      : SizedMeasurement<M>(Model::kStates, is_position) {
+      : ErasedMeasurement(is_position) {
     set(model, value);
   }
   void set(const Model& model, const Vector& value) {
     model_ = model;
     this->z = value;
-    this->R = model_.R();
+    this->R = model.R();
   }
 
-  Vector h(const double* x) const override { return model_.h(state(x)); }
+  Vector h(const double* x) const override { return model_->h(state(x)); }
   void H(const double* x, double* jacobian) const override {
     Eigen::Map<Jacobian> filled(jacobian);
-    filled = model_.H(state(x));
+    filled = model_->H(state(x));
   }
   void modified_gain(const double* x, double* g) const override {
     Eigen::Map<Jacobian> filled(g);
-    if constexpr (requires { model_.modified_gain(this->z, state(x)); })
-      filled = model_.modified_gain(this->z, state(x));
+    if constexpr (requires(const Model& m) { m.modified_gain(this->z, state(x)); })
+      filled = model_->modified_gain(this->z, state(x));
     else
-      filled = model_.H(state(x));
+      filled = model_->H(state(x));
   }
-  Vector residual(const Vector& a, const Vector& b) const override { return model_.residual(a, b); }
+  Vector residual(const Vector& a, const Vector& b) const override { return model_->residual(a, b); }
 
-  const Model& model() const { return model_; }
+  const Model& model() const { return *model_; }
 
  private:
   static State state(const double* x) { return State(Eigen::Map<const State>(x)); }
 
-  Model model_{};
+  std::optional<Model> model_;
 };
 
 /// A measurement as a measurement model of a state of N components, for the templates.

@@ -53,8 +53,7 @@ class SensorOf final : public AnySensor {
   using Model = typename Sensor::Model;
 
  public:
-  explicit SensorOf(Sensor sensor)
-      : sensor_(std::move(sensor)), taken_(Model{}, Model::Vector::Zero(), Sensor::kMeasuresPosition) {}
+  explicit SensorOf(Sensor sensor) : sensor_(std::move(sensor)), taken_(Sensor::kMeasuresPosition) {}
 
   Measured measured() const override { return sensor_.measured(); }
   int size() const override { return Model::kMeasurements; }

@@ -12,6 +12,7 @@
 namespace truebearing {
 namespace {
 
+using ::testing::HasSubstr;
 using testing::kStudy;
 using testing::Outcome;
 using testing::replaced;
@@ -20,12 +21,12 @@ using testing::start;
 using testing::TemporaryFolder;
 using testing::wait_for;
 using testing::write_study;
-using ::testing::HasSubstr;
 
 TEST(ProgramCrash, KilledWhileTrainingLeavesTheOldModel) {
   const TemporaryFolder folder, outputs;
   // Long enough that it is always killed in the middle of it.
-  write_study(folder, replaced(replaced(kStudy, "iterations = 10", "iterations = 100000"), "runs = 20\niterations", "runs = 200\niterations"));
+  write_study(folder, replaced(replaced(kStudy, "iterations = 10", "iterations = 100000"), "runs = 20\niterations",
+                               "runs = 200\niterations"));
   folder.write("small.nfnn.json", "the old model");
   const int files = folder.files();
   for (const int milliseconds : {0, 30, 150, 400}) {

@@ -15,15 +15,15 @@
 namespace truebearing {
 namespace {
 
-using testing::error_message;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
 using nlohmann::json;
+using ::testing::AllOf;
+using testing::error_message;
+using ::testing::HasSubstr;
 
 CorrectionModel model_to_save() {
   RandomStream random({.seed = 4}, StreamId::test);
-  CorrectionModel model =
-      testing::line_model(testing::radar_features(), testing::random_parameters(random, 4, 5, 2), "plain", "tuned", "wide");
+  CorrectionModel model = testing::line_model(testing::radar_features(), testing::random_parameters(random, 4, 5, 2),
+                                              "plain", "tuned", "wide");
   model.design.features.back() = {.kind = FeatureKind::innovation_average, .companion = "wide", .alpha = 1.0 / 3.0};
   model.gate = testing::box(4, -1.0 / 3.0, 1e-300, 2.5);
   model.inflation = Eigen::VectorXd::NullaryExpr(5, [&] { return std::pow(10.0, random.uniform(-300.0, 300.0)); });
@@ -60,7 +60,8 @@ TEST(ModelFile, FeaturesOfANeighbourAreKept) {
   CorrectionModel model = model_to_save();
   model.design.features[0] = {.kind = FeatureKind::neighbour_closeness};
   model.design.features[1] = {.kind = FeatureKind::neighbour_difference, .component = "velocity_mps", .scale = 0.1};
-  model.design.features[2] = {.kind = FeatureKind::neighbour_difference, .component = "position_m", .scale_is_sigma = true};
+  model.design.features[2] = {
+      .kind = FeatureKind::neighbour_difference, .component = "position_m", .scale_is_sigma = true};
   const std::string saved = model_text(model);
   const CorrectionModel loaded = parse_model(saved, "model.json");
   EXPECT_EQ(loaded.design.features, model.design.features);
@@ -111,7 +112,8 @@ TEST(ModelFile, TruncatedAnywhereItIsRefused) {
 }
 
 TEST(ModelFile, OtherFormatOrVersionIsRefused) {
-  EXPECT_THAT(refusal_of([](json& j) { j["format"] = "onnx"; }), AllOf(HasSubstr("format"), HasSubstr("truebearing-correction")));
+  EXPECT_THAT(refusal_of([](json& j) { j["format"] = "onnx"; }),
+              AllOf(HasSubstr("format"), HasSubstr("truebearing-correction")));
   EXPECT_THAT(refusal_of([](json& j) { j["version"] = 3; }), AllOf(HasSubstr("version"), HasSubstr("is 3")));
   EXPECT_THAT(refusal_of([](json& j) { j["version"] = "1"; }), HasSubstr("version"));
   EXPECT_THAT(refusal_of([](json& j) { j.erase("format"); }), HasSubstr("format: is missing"));
@@ -122,7 +124,8 @@ TEST(ModelFile, OtherFormatOrVersionIsRefused) {
 TEST(ModelFile, EveryMissingKeyIsNamed) {
   const json good = json::parse(model_text(model_to_save()));
   for (const auto& [key, value] : good.items())
-    EXPECT_THAT(refusal_of([&](json& j) { j.erase(key); }), AllOf(HasSubstr("model.json: " + key), HasSubstr("missing")));
+    EXPECT_THAT(refusal_of([&](json& j) { j.erase(key); }),
+                AllOf(HasSubstr("model.json: " + key), HasSubstr("missing")));
   for (const auto& [key, value] : good["rules"][0].items())
     EXPECT_THAT(refusal_of([&](json& j) { j["rules"][2].erase(key); }), HasSubstr("rules[2]." + key));
   for (const auto& [key, value] : good["gate"].items())
@@ -136,13 +139,17 @@ TEST(ModelFile, EveryWrongTypeIsRefused) {
   const json flat = json::parse(model_text(model_to_save())).flatten();
   for (const auto& [pointer, value] : flat.items())
     for (const json& wrong : {json::object(), json(true), value.is_string() ? json(1.0) : json("1.0")})
-      EXPECT_NE(refusal_of([&](json& j) { j[json::json_pointer(pointer)] = wrong; }), "no error") << pointer << " = " << wrong;
+      EXPECT_NE(refusal_of([&](json& j) { j[json::json_pointer(pointer)] = wrong; }), "no error")
+          << pointer << " = " << wrong;
 }
 
 TEST(ModelFile, WrongShapesAreRefused) {
   EXPECT_THAT(refusal_of([](json& j) { j["rules"][1]["centre"].push_back(0.0); }), HasSubstr("rules[1].centre"));
   EXPECT_THAT(refusal_of([](json& j) { j["rules"][1]["width"].erase(0); }), HasSubstr("rules[1].width"));
-  EXPECT_THAT(refusal_of([](json& j) { j["rules"][1]["consequent"] = {1.0, 2.0, 3.0}; }), HasSubstr("rules[1].consequent"));
+  EXPECT_THAT(refusal_of([](json& j) {
+                j["rules"][1]["consequent"] = {1.0, 2.0, 3.0};
+              }),
+              HasSubstr("rules[1].consequent"));
   EXPECT_THAT(refusal_of([](json& j) { j["rules"] = json::array(); }), HasSubstr("rules"));
   EXPECT_THAT(refusal_of([](json& j) { j["features"] = json::array(); }), HasSubstr("features"));
   EXPECT_THAT(refusal_of([](json& j) { j["features"].erase(0); }), HasSubstr("input_mean"));
@@ -193,12 +200,14 @@ TEST(ModelFile, NumbersOutOfRangeAreRefused) {
 }
 
 TEST(ModelFile, UnknownKeyIsRefusedWithTheNearest) {
-  EXPECT_THAT(refusal_of([](json& j) { j["featurs"] = 1.0; }), AllOf(HasSubstr("featurs"), HasSubstr("did you mean \"features\"")));
+  EXPECT_THAT(refusal_of([](json& j) { j["featurs"] = 1.0; }),
+              AllOf(HasSubstr("featurs"), HasSubstr("did you mean \"features\"")));
   EXPECT_THAT(refusal_of([](json& j) { j["rules"][3]["center"] = 1.0; }),
               AllOf(HasSubstr("rules[3].center"), HasSubstr("did you mean \"centre\"")));
   EXPECT_THAT(refusal_of([](json& j) { j["gate"]["hihg"] = 1.0; }), HasSubstr("did you mean \"high\""));
   EXPECT_THAT(refusal_of([](json& j) { j["features"][0]["scale"] = 1.0; }), HasSubstr("features[0].scale"));
-  EXPECT_THAT(refusal_of([](json& j) { j["features"][0]["kind"] = "log_stepp"; }), HasSubstr("did you mean \"log_step\""));
+  EXPECT_THAT(refusal_of([](json& j) { j["features"][0]["kind"] = "log_stepp"; }),
+              HasSubstr("did you mean \"log_step\""));
 }
 
 TEST(ModelFile, KeyThatStandsTwiceIsRefused) {
@@ -210,11 +219,12 @@ TEST(ModelFile, KeyThatStandsTwiceIsRefused) {
 TEST(ModelFile, DepthBombIsRefused) {
   for (const std::size_t depth : {65u, 100000u})
     for (const std::string& open : {std::string("["), std::string("{\"a\":")})
-      EXPECT_NE(refusal(std::string(model_text(model_to_save()).substr(0, 1)) + "\"rules\":" + [&] {
-                  std::string bomb;
-                  for (std::size_t level = 0; level < depth; ++level) bomb += open;
-                  return bomb;
-                }()),
+      EXPECT_NE(refusal(std::string(model_text(model_to_save()).substr(0, 1)) + "\"rules\":" +
+                        [&] {
+                          std::string bomb;
+                          for (std::size_t level = 0; level < depth; ++level) bomb += open;
+                          return bomb;
+                        }()),
                 "no error")
           << depth;
   std::string closed = std::string(65, '[') + std::string(65, ']');
@@ -244,10 +254,17 @@ TEST(ModelFile, AlteredAnyhowItIsRefusedOrValid) {
     for (std::uint64_t change = 0, changes = 1 + random.index(3); change < changes; ++change) {
       const std::size_t place = random.index(text.size());
       switch (random.index(4)) {
-        case 0: text[place] = static_cast<char>(random.index(256)); break;
-        case 1: text.erase(place, 1 + random.index(20)); break;
-        case 2: text.insert(place, text.substr(random.index(text.size()), random.index(40))); break;
-        default: text[place] = "0123456789eE+-.,:[]{}\"\\"[random.index(22)];
+        case 0:
+          text[place] = static_cast<char>(random.index(256));
+          break;
+        case 1:
+          text.erase(place, 1 + random.index(20));
+          break;
+        case 2:
+          text.insert(place, text.substr(random.index(text.size()), random.index(40)));
+          break;
+        default:
+          text[place] = "0123456789eE+-.,:[]{}\"\\"[random.index(22)];
       }
     }
     try {

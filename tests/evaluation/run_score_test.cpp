@@ -14,8 +14,8 @@
 namespace truebearing {
 namespace {
 
-using testing::error_message;
 using ::testing::ElementsAre;
+using testing::error_message;
 using testing::kNaN;
 using testing::position;
 using testing::RadarFilter;
@@ -34,7 +34,8 @@ TEST(Scorer, FindsComponentsByNameNotByPlace) {
   EXPECT_EQ(scorer.dimension(), 2);
   RunScore score;
   scorer.prepare(score, 1);
-  scorer.score_step(Eigen::Vector2d(100.0, 10.0), record(Eigen::Vector3d(13.0, 999.0, 96.0), Eigen::Vector3d(9.0, 1.0, 4.0)), 0, score);
+  scorer.score_step(Eigen::Vector2d(100.0, 10.0),
+                    record(Eigen::Vector3d(13.0, 999.0, 96.0), Eigen::Vector3d(9.0, 1.0, 4.0)), 0, score);
   EXPECT_EQ(score.error[0][0], 4.0);
   EXPECT_EQ(score.error[1][0], 3.0);
   EXPECT_DOUBLE_EQ(score.nees[0], 16.0 / 4.0 + 9.0 / 9.0);
@@ -50,7 +51,8 @@ TEST(Scorer, ErrorOfAVectorIsItsNorm) {
   const Scorer scorer(plane_space(), plane_space());
   RunScore score;
   scorer.prepare(score, 1);
-  scorer.score_step(Eigen::Vector4d(3.0, 4.0, 0.0, 1.0), record(Eigen::Vector4d::Zero(), Eigen::Vector4d::Ones()), 0, score);
+  scorer.score_step(Eigen::Vector4d(3.0, 4.0, 0.0, 1.0), record(Eigen::Vector4d::Zero(), Eigen::Vector4d::Ones()), 0,
+                    score);
   EXPECT_DOUBLE_EQ(score.error[0][0], 5.0);
   EXPECT_DOUBLE_EQ(score.error[1][0], 1.0);
   EXPECT_DOUBLE_EQ(score.nees[0], 26.0);
@@ -73,7 +75,8 @@ TEST(ScoreRecording, StepsWithoutRecordTruthOrBeforeTheFirstAreNotScored) {
     recording.truth[0].x.emplace_back(Eigen::Vector2d(k == 5 ? kNaN : 10.0 * k, 10.0));
   }
   Ensemble ensemble;
-  ensemble.add("raw", std::make_unique<RawTracker>(state_space_of_components({"position_m"}), BoundedVector::Constant(1, 2.0)));
+  ensemble.add(
+      "raw", std::make_unique<RawTracker>(state_space_of_components({"position_m"}), BoundedVector::Constant(1, 2.0)));
   TrackerSet set(std::move(ensemble));
   set.show_member("raw");
   const std::vector<Scorer> scorers{Scorer(line_space(), set.space(0))};

@@ -51,9 +51,9 @@ TEST(TargetMotion, VarianceIsThatOfSmallErrors) {
   }
   // Four standard errors of a variance of so many draws.
   const double tolerance = 4.0 * std::sqrt(2.0 / kDraws);
-  for (const auto part : {&TargetMotionVariance::position_m2, &TargetMotionVariance::velocity_m2ps2,
-                          &TargetMotionVariance::range_percent2, &TargetMotionVariance::course_deg2,
-                          &TargetMotionVariance::speed_m2ps2})
+  for (const auto part :
+       {&TargetMotionVariance::position_m2, &TargetMotionVariance::velocity_m2ps2,
+        &TargetMotionVariance::range_percent2, &TargetMotionVariance::course_deg2, &TargetMotionVariance::speed_m2ps2})
     EXPECT_NEAR(drawn.*part / (variance.*part), 1.0, tolerance);
 }
 

@@ -36,7 +36,8 @@ TEST(TimeMetrics, OfQuantitiesByHand) {
   EXPECT_DOUBLE_EQ(rmse.value, std::sqrt((9.0 + 16.0 + 121.0) / 3.0));
   const double a = std::sqrt(68.5), b = std::sqrt(65.0), c = std::sqrt(12.5), mean = (a + b + c) / 3.0;
   EXPECT_NEAR(rmse.se,
-              std::sqrt(2.0 / 3.0 * ((a - mean) * (a - mean) + (b - mean) * (b - mean) + (c - mean) * (c - mean))), 1e-12);
+              std::sqrt(2.0 / 3.0 * ((a - mean) * (a - mean) + (b - mean) * (b - mean) + (c - mean) * (c - mean))),
+              1e-12);
   EXPECT_DOUBLE_EQ(find_metric(metrics, "position_median", 60.0).value, 4.0);
   EXPECT_EQ(find_metric(metrics, "velocity_rmse", 60.0).unit, "m/s");
   EXPECT_DOUBLE_EQ(find_metric(metrics, "nees", 60.0).value, 4.0);

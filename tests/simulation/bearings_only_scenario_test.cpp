@@ -12,8 +12,8 @@
 namespace truebearing {
 namespace {
 
-using ::testing::HasSubstr;
 using testing::error_message;
+using ::testing::HasSubstr;
 
 const std::string kHead = R"(
 period_s = 4.0
@@ -64,9 +64,9 @@ TEST(BearingsOnlyScenario, BearingsAreMissingWhileOwnShipTurnsWhereAskedFor) {
 TEST(BearingsOnlyScenario, DropoutsAndOutliersComeAtTheirRates) {
   int missing = 0, far = 0, count = 0;
   for (std::uint64_t number = 0; number < 40; ++number) {
-    const Recording recording = run(
-        "sensor = { bearing_sigma_deg = 0.1, dropout_share = 0.2, outlier_share = 0.1, outlier_factor = 100.0 }\n",
-        number);
+    const Recording recording =
+        run("sensor = { bearing_sigma_deg = 0.1, dropout_share = 0.2, outlier_share = 0.1, outlier_factor = 100.0 }\n",
+            number);
     for (std::size_t k = 0; k < recording.measurements.size(); ++k) {
       const Measurement& m = recording.measurements[k];
       ++count;
@@ -97,10 +97,10 @@ TEST(BearingsOnlyScenario, FirstMeasurementCarriesTheGuess) {
 
 TEST(BearingsOnlyScenario, GuessesStayAboveTheirLeast) {
   for (std::uint64_t number = 0; number < 100; ++number) {
-    const Recording recording = run(
-        "sensor = { bearing_sigma_deg = 1.0 }\n"
-        "guess = { range_sigma_m = 9000.0, least_range_m = 600.0, speed_sigma_mps = 5.0, least_speed_mps = 0.3 }\n",
-        number);
+    const Recording recording =
+        run("sensor = { bearing_sigma_deg = 1.0 }\n"
+            "guess = { range_sigma_m = 9000.0, least_range_m = 600.0, speed_sigma_mps = 5.0, least_speed_mps = 0.3 }\n",
+            number);
     EXPECT_GE(recording.measurements[0].guess->range_m, 600.0);
     EXPECT_GE(recording.measurements[0].guess->speed_mps, 0.3);
   }

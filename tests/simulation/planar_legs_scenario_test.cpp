@@ -12,8 +12,8 @@
 namespace truebearing {
 namespace {
 
-using ::testing::HasSubstr;
 using testing::error_message;
+using ::testing::HasSubstr;
 
 const std::string kHead = R"(period_s = 5.0
 target = { position_m = [25000.0, 10000.0], velocity_mps = [-120.0, 0.0] }
@@ -77,12 +77,15 @@ TEST(PlanarLegs, KeysAreChecked) {
   const std::string legs = "legs = [ { duration_s = 10 } ]\n";
   EXPECT_EQ(error_of(kHead + kSensor + legs), "no error");
   EXPECT_THAT(error_of(kHead + kSensor), HasSubstr("legs"));
-  EXPECT_THAT(error_of(kHead + kSensor + "legs = [ { duration_s = 10, turn_rate = 1 } ]\n"), HasSubstr("turn_rate_degps"));
-  EXPECT_THAT(error_of(kHead + kSensor + "legs = [ { duration_s = 10, turn_rate_degps = 1, acceleration_mps2 = [1, 1] } ]\n"),
-              HasSubstr("one of them"));
+  EXPECT_THAT(error_of(kHead + kSensor + "legs = [ { duration_s = 10, turn_rate = 1 } ]\n"),
+              HasSubstr("turn_rate_degps"));
+  EXPECT_THAT(
+      error_of(kHead + kSensor + "legs = [ { duration_s = 10, turn_rate_degps = 1, acceleration_mps2 = [1, 1] } ]\n"),
+      HasSubstr("one of them"));
   EXPECT_THAT(error_of(kHead + kSensor + "legs = [ { duration_s = 10, phase = \"a\" }, { duration_s = 5 } ]\n"),
               HasSubstr("phase"));
-  EXPECT_THAT(error_of(kHead + legs + "sensor = { position_covariance_m2 = [1, 2, 2, 1] }\n"), HasSubstr("positive definite"));
+  EXPECT_THAT(error_of(kHead + legs + "sensor = { position_covariance_m2 = [1, 2, 2, 1] }\n"),
+              HasSubstr("positive definite"));
 }
 
 }  // namespace

@@ -10,8 +10,8 @@
 namespace truebearing {
 namespace {
 
-using testing::error_message;
 using ::testing::AllOf;
+using testing::error_message;
 using ::testing::HasSubstr;
 using testing::TemporaryFolder;
 
@@ -30,17 +30,20 @@ TEST(ParametersFile, ReadsBackWhatItWrote) {
 TEST(ParametersFile, NumbersThatAreNotPositiveAreRefused) {
   const TemporaryFolder folder;
   for (const char* bad : {"0.0", "-1.0", "nan", "inf", "\"5\"", "[1.0, 0.0]"})
-    EXPECT_THAT(error_message([&] { read_parameters_file(folder.write("p.toml", std::string("[tuned]\n\"a.b\" = ") + bad)); }),
-                AllOf(HasSubstr("p.toml"), HasSubstr("a.b")))
+    EXPECT_THAT(
+        error_message([&] { read_parameters_file(folder.write("p.toml", std::string("[tuned]\n\"a.b\" = ") + bad)); }),
+        AllOf(HasSubstr("p.toml"), HasSubstr("a.b")))
         << bad;
 }
 
 TEST(NumbersAt, PathLeadsToNumbers) {
-  const toml::table table = parse_toml("[motion]\nvariance = [5, 0.1]\nsigma = 2\nname = \"x\"\nzero = [1.0, 0.0]\n", "s.toml");
+  const toml::table table =
+      parse_toml("[motion]\nvariance = [5, 0.1]\nsigma = 2\nname = \"x\"\nzero = [1.0, 0.0]\n", "s.toml");
   EXPECT_EQ(numbers_at(table, "motion.variance", "here"), (std::vector<double>{5.0, 0.1}));
   EXPECT_EQ(numbers_at(table, "motion.sigma", "here"), std::vector<double>{2.0});
   for (const char* bad : {"motion", "motion.name", "motion.other", "other.variance", "", "motion.variance.x"})
-    EXPECT_THAT(error_message([&] { numbers_at(table, bad, "here"); }), AllOf(HasSubstr("here"), HasSubstr(bad))) << bad;
+    EXPECT_THAT(error_message([&] { numbers_at(table, bad, "here"); }), AllOf(HasSubstr("here"), HasSubstr(bad)))
+        << bad;
   EXPECT_THAT(error_message([&] { numbers_at(table, "motion.zero", "here"); }), HasSubstr("> 0"));
 }
 

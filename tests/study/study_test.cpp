@@ -14,8 +14,8 @@
 namespace truebearing {
 namespace {
 
-using testing::error_message;
 using ::testing::AllOf;
+using testing::error_message;
 using ::testing::HasSubstr;
 using testing::kStudy;
 using testing::replaced;
@@ -48,14 +48,19 @@ TEST(Study, SmallStudyIsValid) {
 }
 
 TEST(Study, UnknownKeysAreRefusedWithTheNearest) {
-  EXPECT_THAT(refusal("runs = 20\nseed", "run = 20\nseed"), AllOf(HasSubstr("small.toml:4: run"), HasSubstr("did you mean \"runs\"")));
-  EXPECT_THAT(refusal("[scoring]\n", "[scoring]\nfrom_steps = 2\n"), AllOf(HasSubstr("scoring.from_steps"), HasSubstr("\"from_step\"")));
+  EXPECT_THAT(refusal("runs = 20\nseed", "run = 20\nseed"),
+              AllOf(HasSubstr("small.toml:4: run"), HasSubstr("did you mean \"runs\"")));
+  EXPECT_THAT(refusal("[scoring]\n", "[scoring]\nfrom_steps = 2\n"),
+              AllOf(HasSubstr("scoring.from_steps"), HasSubstr("\"from_step\"")));
   EXPECT_THAT(refusal("[tuning]\nruns", "[tuning]\nrun"), AllOf(HasSubstr("tuning.run"), HasSubstr("\"runs\"")));
   EXPECT_THAT(refusal("period_s = 1.0", "periods_s = 1.0"), HasSubstr("period_s"));
-  EXPECT_THAT(refusal("variance_m2 = 1e7", "variance_m2 = 1e7, sigma_factr = 2.0"), HasSubstr("did you mean \"sigma_factor\""));
-  EXPECT_THAT(refusal("kappa = 3.0", "kapa = 3.0"), AllOf(HasSubstr("trackers.nfnn"), HasSubstr("did you mean \"kappa\"")));
+  EXPECT_THAT(refusal("variance_m2 = 1e7", "variance_m2 = 1e7, sigma_factr = 2.0"),
+              HasSubstr("did you mean \"sigma_factor\""));
+  EXPECT_THAT(refusal("kappa = 3.0", "kapa = 3.0"),
+              AllOf(HasSubstr("trackers.nfnn"), HasSubstr("did you mean \"kappa\"")));
   EXPECT_THAT(refusal("rules = 4", "rule = 4"), AllOf(HasSubstr("trackers.nfnn.training"), HasSubstr("rules")));
-  EXPECT_THAT(refusal("{ kind = \"log_step\" }", "{ kind = \"log_step\", scale = 2.0 }"), HasSubstr("features[0].scale"));
+  EXPECT_THAT(refusal("{ kind = \"log_step\" }", "{ kind = \"log_step\", scale = 2.0 }"),
+              HasSubstr("features[0].scale"));
   EXPECT_THAT(refusal("kind = \"log_step\"", "kind = \"log_stp\""), HasSubstr("did you mean \"log_step\""));
   EXPECT_THAT(refusal("show = false", "shown = false"), HasSubstr("did you mean \"show\""));
 }
@@ -84,13 +89,15 @@ TEST(Study, NumbersOutOfRangeAreRefused) {
   EXPECT_THAT(refusal("scale = 100.0", "scale = 0.0"), HasSubstr("scale"));
   EXPECT_THAT(refusal("offset = 0.05", "offset = -1.0"), HasSubstr("offset"));
   EXPECT_THAT(refusal("kappa = 3.0", "kappa = 3.0\ngate = { quantile = 0.5 }"), HasSubstr("gate.quantile"));
-  EXPECT_THAT(refusal("kappa = 3.0", "kappa = 3.0\ngate = { disagreement_quantile = 0.6 }"), HasSubstr("gate.disagreement_quantile"));
+  EXPECT_THAT(refusal("kappa = 3.0", "kappa = 3.0\ngate = { disagreement_quantile = 0.6 }"),
+              HasSubstr("gate.disagreement_quantile"));
   EXPECT_THAT(refusal("kappa = 3.0", "kappa = 3.0\ngate = { edge_fraction = 0.0 }"), HasSubstr("gate.edge_fraction"));
   EXPECT_THAT(refusal("position_m = 20000.0", "position_m = -1.0"), HasSubstr("loss_thresholds.position_m"));
 }
 
 TEST(Study, VariancesThatAreNoneAreRefused) {
-  EXPECT_THAT(refusal("variance = [999.0, 999.0]", "variance = [999.0, 0.0]"), AllOf(HasSubstr("start.variance"), HasSubstr("> 0")));
+  EXPECT_THAT(refusal("variance = [999.0, 999.0]", "variance = [999.0, 0.0]"),
+              AllOf(HasSubstr("start.variance"), HasSubstr("> 0")));
   EXPECT_THAT(refusal("variance = [999.0, 999.0]", "variance = [999.0]"), HasSubstr("2 numbers"));
   EXPECT_THAT(refusal("variance = [5.0, 0.1]", "variance = [5.0, -0.1]"), HasSubstr("trackers.plain.motion.variance"));
   EXPECT_THAT(refusal("variance_m2 = 1e7", "variance_m2 = 0.0"), HasSubstr("trackers.plain.measurement.variance_m2"));
@@ -107,7 +114,8 @@ TEST(Study, MissingKeysAndFilesAreNamed) {
 }
 
 TEST(Study, NamesOfTrackersMustBeThere) {
-  EXPECT_THAT(refusal("nfnn - tuned", "nfn - tuned"), AllOf(HasSubstr("scoring.pairs"), HasSubstr("did you mean \"nfnn\"")));
+  EXPECT_THAT(refusal("nfnn - tuned", "nfn - tuned"),
+              AllOf(HasSubstr("scoring.pairs"), HasSubstr("did you mean \"nfnn\"")));
   EXPECT_THAT(refusal("nfnn - tuned", "nfnn"), HasSubstr("a - b"));
   EXPECT_THAT(refusal("[scoring]\n", "[scoring]\nbounds = [\"bank\"]\n"), HasSubstr("scoring.bounds"));
   EXPECT_THAT(refusal("base = \"plain\"", "base = \"plan\""), HasSubstr("did you mean \"plain\""));
@@ -119,10 +127,12 @@ TEST(Study, NamesOfTrackersMustBeThere) {
 }
 
 TEST(Study, FeaturesThatTheRecordsCannotGiveAreRefused) {
-  EXPECT_THAT(refusal("component = \"velocity_mps\"", "component = \"velocity_mph\""), HasSubstr("did you mean \"velocity_mps\""));
-  const std::string with_raw = replaced(kStudy, "[trackers.plain]",
-                                        "[trackers.raw]\nkind = \"raw\"\ncomponents = [\"position_m\", \"velocity_mps\"]\nsigma = "
-                                        "[150.0, 1.0]\n\n[trackers.plain]");
+  EXPECT_THAT(refusal("component = \"velocity_mps\"", "component = \"velocity_mph\""),
+              HasSubstr("did you mean \"velocity_mps\""));
+  const std::string with_raw =
+      replaced(kStudy, "[trackers.plain]",
+               "[trackers.raw]\nkind = \"raw\"\ncomponents = [\"position_m\", \"velocity_mps\"]\nsigma = "
+               "[150.0, 1.0]\n\n[trackers.plain]");
   const TemporaryFolder folder;
   const auto path = write_study(folder, replaced(with_raw, "base = \"plain\"", "base = \"raw\""));
   EXPECT_THAT(error_message([&] { Study::load(path); }), AllOf(HasSubstr("trackers.nfnn"), HasSubstr("innovation")));
@@ -130,19 +140,23 @@ TEST(Study, FeaturesThatTheRecordsCannotGiveAreRefused) {
 
 TEST(Study, LikeTakesOverAWholeChain) {
   const TemporaryFolder folder;
-  const Study study = Study::load(write_study(folder, kStudy + "\n[trackers.wider]\nlike = \"wide\"\nstart = { variance = [1e8, 1e6] }\n"));
+  const Study study = Study::load(
+      write_study(folder, kStudy + "\n[trackers.wider]\nlike = \"wide\"\nstart = { variance = [1e8, 1e6] }\n"));
   const std::string line = study.configuration_line("wider");
-  EXPECT_THAT(line, AllOf(HasSubstr("variance = [100000000, 1000000]"), HasSubstr("x = [0, 0]"), HasSubstr("variance_m2 = 10000000")));
+  EXPECT_THAT(line, AllOf(HasSubstr("variance = [100000000, 1000000]"), HasSubstr("x = [0, 0]"),
+                          HasSubstr("variance_m2 = 10000000")));
   EXPECT_TRUE(study.tracker("wider").shown) << "whether it is shown is not inherited";
   EXPECT_TRUE(study.tracker("wide").tune.empty());
 }
 
 TEST(Study, LikeInACircleIsRefused) {
-  EXPECT_THAT(refusal("[trackers.tuned]\nlike = \"plain\"", "[trackers.tuned]\nlike = \"tuned\""), HasSubstr("`like` itself"));
+  EXPECT_THAT(refusal("[trackers.tuned]\nlike = \"plain\"", "[trackers.tuned]\nlike = \"tuned\""),
+              HasSubstr("`like` itself"));
   EXPECT_THAT(refusal("[trackers.tuned]\nlike = \"plain\"",
                       "[trackers.a]\nlike = \"b\"\n[trackers.b]\nlike = \"a\"\n[trackers.tuned]\nlike = \"plain\""),
               HasSubstr("`like` itself"));
-  EXPECT_THAT(refusal("[trackers.tuned]\nlike = \"plain\"", "[trackers.tuned]\nlike = \"plane\""), HasSubstr("did you mean \"plain\""));
+  EXPECT_THAT(refusal("[trackers.tuned]\nlike = \"plain\"", "[trackers.tuned]\nlike = \"plane\""),
+              HasSubstr("did you mean \"plain\""));
 }
 
 TEST(Study, StudyCanBeLikeAnotherBesideIt) {
@@ -164,7 +178,8 @@ TEST(Study, StudyCanBeLikeAnotherBesideIt) {
 
 TEST(Study, SetsAreWhatItIsComparedOn) {
   const TemporaryFolder folder;
-  const Study study = Study::load(write_study(folder, kStudy + "\n[sets]\none = \"scenario.toml\"\ntwo = \"scenario.toml\"\n"));
+  const Study study =
+      Study::load(write_study(folder, kStudy + "\n[sets]\none = \"scenario.toml\"\ntwo = \"scenario.toml\"\n"));
   const std::vector<NamedScenario> sets = study.evaluation_scenarios();
   ASSERT_EQ(sets.size(), 2u);
   EXPECT_EQ(sets[1].name, "two");
@@ -173,7 +188,8 @@ TEST(Study, SetsAreWhatItIsComparedOn) {
        std::vector<std::pair<std::string, std::string>>{{"one = 1", "sets.one"},
                                                         {"one = \"nowhere.toml\"", "nowhere.toml"},
                                                         {"one = \"" + plane + "\"", "has another truth"}})
-    EXPECT_THAT(error_message([&] { Study::load(write_study(folder, kStudy + "\n[sets]\n" + text + "\n")); }), HasSubstr(says));
+    EXPECT_THAT(error_message([&] { Study::load(write_study(folder, kStudy + "\n[sets]\n" + text + "\n")); }),
+                HasSubstr(says));
 }
 
 TEST(Study, ScenarioMayStandInTheStudy) {
@@ -201,7 +217,8 @@ TEST(Study, MissingParametersNameTheCommand) {
   EXPECT_THAT(error_message([&] { study.make_tracker_set(); }), HasSubstr(command));
   EXPECT_EQ(error_message([&] { study.make_tracker("plain"); }), "no error");
   folder.write("small.parameters.toml", "[tuned]\n\"start.variance\" = [1.0]\n");
-  EXPECT_THAT(error_message([&] { Study::load(path).make_tracker("tuned"); }), HasSubstr(command)) << "one number for two";
+  EXPECT_THAT(error_message([&] { Study::load(path).make_tracker("tuned"); }), HasSubstr(command))
+      << "one number for two";
   folder.write("small.parameters.toml", "[tuned]\n\"start.variance\" = [1.0, -1.0]\n");
   EXPECT_THAT(error_message([&] { Study::load(path); }), AllOf(HasSubstr("small.parameters.toml:2"), HasSubstr("> 0")));
 }
@@ -218,19 +235,24 @@ TEST(Study, MissingModelNamesTheCommand) {
   const auto path = write_study(folder);
   const Study study = Study::load(path);
   EXPECT_THAT(error_message([&] { study.make_tracker("nfnn"); }),
-              AllOf(HasSubstr("small.nfnn.json"), HasSubstr("does not exist"), HasSubstr("truebearing train " + path.string())));
+              AllOf(HasSubstr("small.nfnn.json"), HasSubstr("does not exist"),
+                    HasSubstr("truebearing train " + path.string())));
 }
 
 TEST(Study, ModelThatWasTrainedForSomethingElseIsRefused) {
   const TemporaryFolder folder;
   const auto path = write_study(folder);
-  folder.write("small.nfnn.json", model_text(train_correction(Study::load(path), "nfnn", {.seed = 1, .threads = 1, .teacher_progress = {}, .training_progress = {}})));
+  folder.write("small.nfnn.json", model_text(train_correction(
+                                      Study::load(path), "nfnn",
+                                      {.seed = 1, .threads = 1, .teacher_progress = {}, .training_progress = {}})));
   EXPECT_EQ(error_message([&] { Study::load(path).make_tracker("nfnn"); }), "no error");
   const auto load = [&](const std::string& from, const std::string& to) {
-    return error_message([&] { Study::load(folder.write("small.toml", replaced(kStudy, from, to))).make_tracker("nfnn"); });
+    return error_message(
+        [&] { Study::load(folder.write("small.toml", replaced(kStudy, from, to))).make_tracker("nfnn"); });
   };
   const auto says = [](const std::string& what) {
-    return AllOf(HasSubstr("small.nfnn.json"), HasSubstr("was trained for"), HasSubstr(what), HasSubstr("truebearing train"));
+    return AllOf(HasSubstr("small.nfnn.json"), HasSubstr("was trained for"), HasSubstr(what),
+                 HasSubstr("truebearing train"));
   };
   EXPECT_THAT(load("offset = 0.05", "offset = 0.06"), says("features"));
   EXPECT_THAT(load("  { kind = \"log_step\" },\n", ""), says("features"));
@@ -250,8 +272,8 @@ TEST(Study, GateWithoutABoxIsRefused) {
   const TemporaryFolder folder;
   const auto path = write_study(folder);
   const Study study = Study::load(path);
-  CorrectionModel model = train_correction(
-      study, "nfnn", {.seed = 1, .threads = 1, .teacher_progress = {}, .training_progress = {}});
+  CorrectionModel model =
+      train_correction(study, "nfnn", {.seed = 1, .threads = 1, .teacher_progress = {}, .training_progress = {}});
   model.gate.reset();
   EXPECT_THAT(error_message([&] { study.check_model("nfnn", model, "here"); }),
               AllOf(HasSubstr("here"), HasSubstr("box"), HasSubstr("gate = false")));
@@ -278,7 +300,8 @@ TEST(Study, DeepNestingAndAbsurdSizesAreRefused) {
   std::string dots = "a";
   for (int k = 0; k < 70; ++k) dots += ".a";
   EXPECT_THAT(refusal("runs = 20\nseed", dots + " = 1\nseed"), HasSubstr("64 levels"));
-  EXPECT_THAT(refusal("name = \"small\"", "name = \"" + std::string(2 << 20, 'x') + "\""), HasSubstr("at most 1048576 bytes"));
+  EXPECT_THAT(refusal("name = \"small\"", "name = \"" + std::string(2 << 20, 'x') + "\""),
+              HasSubstr("at most 1048576 bytes"));
 }
 
 TEST(Study, TextThatIsNoTomlIsNamedWithItsLine) {
@@ -287,7 +310,8 @@ TEST(Study, TextThatIsNoTomlIsNamedWithItsLine) {
 }
 
 TEST(Study, StudiesOfTheProjectAreValid) {
-  for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(TRUEBEARING_SOURCE_DIR) / "data/studies"))
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::filesystem::path(TRUEBEARING_SOURCE_DIR) / "data/studies"))
     EXPECT_EQ(error_message([&] { Study::load(entry.path()); }), "no error") << entry.path();
 }
 

@@ -11,9 +11,9 @@
 namespace truebearing {
 namespace {
 
-using testing::error_message;
 using ::testing::AllOf;
 using ::testing::Contains;
+using testing::error_message;
 using ::testing::HasSubstr;
 using testing::kStudy;
 using testing::replaced;
@@ -39,7 +39,8 @@ TEST(TrackerRegistry, OwnKindWorksInAStudy) {
   const auto tracker = study.make_tracker("own");
   EXPECT_EQ(tracker->step(testing::position(1.0, 10.0)).size(), 1u);
   EXPECT_THAT(study.configuration_line("own"), HasSubstr("mine {believed_m = 3000}"));
-  EXPECT_THAT(error_message([&] { make("believed = 1.0\nbelieved_m = 1.0", "mine"); }), HasSubstr("did you mean \"believed_m\""))
+  EXPECT_THAT(error_message([&] { make("believed = 1.0\nbelieved_m = 1.0", "mine"); }),
+              HasSubstr("did you mean \"believed_m\""))
       << "keys that its maker does not ask for are errors";
 }
 
@@ -52,8 +53,8 @@ TEST(TrackerRegistry, NameThatIsTakenIsRefused) {
 
 TEST(TrackerRegistry, UnknownKindListsTheValidOnes) {
   EXPECT_THAT(error_message([] { make("", "kalmann"); }),
-              AllOf(HasSubstr("trackers.mine"), HasSubstr("did you mean \"kalman\""), HasSubstr("raw"), HasSubstr("recorded"),
-                    HasSubstr("corrected")));
+              AllOf(HasSubstr("trackers.mine"), HasSubstr("did you mean \"kalman\""), HasSubstr("raw"),
+                    HasSubstr("recorded"), HasSubstr("corrected")));
 }
 
 const std::string kLine = R"(
@@ -101,22 +102,28 @@ TEST(PlaneMakers, EveryMotionAndSensorTracks) {
       {"motion = { model = \"singer\", sigma_a_mps2 = 3.0, time_constant_s = 20.0 }", longer},
       {"motion = { model = \"turning_target\", turn_rate_noise_degps2 = 0.5, noise = \"discrete\", sigma_a_mps2 = 2.0 }",
        longer}};
-  const std::string polar = "measurement = { model = \"converted_range_bearing\", range_sigma_m = 50.0, bearing_sigma_deg = 0.3 }";
+  const std::string polar =
+      "measurement = { model = \"converted_range_bearing\", range_sigma_m = 50.0, bearing_sigma_deg = 0.3 }";
   for (const auto& [motion, start] : motions)
     for (const char* kind : {"kalman", "unscented"}) {
-      const std::string text = replaced(replaced(kPlane, kPlaneMotion, motion), "start = { kind = \"two_point\" }", start);
+      const std::string text =
+          replaced(replaced(kPlane, kPlaneMotion, motion), "start = { kind = \"two_point\" }", start);
       EXPECT_LT(last_error(*make(text, kind), false), kNearby) << kind << text;
       const std::string by_radar = replaced(text, "measurement = { model = \"position\", sigma_m = 100.0 }", polar);
       EXPECT_LT(last_error(*make(by_radar, kind), true), kNearby) << kind << by_radar;
     }
-  const std::string raw = replaced(replaced(kPlane, "measurement = { model = \"position\", sigma_m = 100.0 }",
-                                            "measurement = { model = \"range_bearing\", range_sigma_m = 50.0, "
-                                            "bearing_sigma_deg = 0.3 }"),
-                                   "start = { kind = \"two_point\" }",
-                                   "start = { kind = \"prior\", x = [1000.0, 5000.0, 90.0, 5.0], variance = [1e4, 1e4, 1e4, 1e4] }");
+  const std::string raw =
+      replaced(replaced(kPlane, "measurement = { model = \"position\", sigma_m = 100.0 }",
+                        "measurement = { model = \"range_bearing\", range_sigma_m = 50.0, "
+                        "bearing_sigma_deg = 0.3 }"),
+               "start = { kind = \"two_point\" }",
+               "start = { kind = \"prior\", x = [1000.0, 5000.0, 90.0, 5.0], variance = [1e4, 1e4, 1e4, 1e4] }");
   for (const char* kind : {"kalman", "unscented"}) EXPECT_LT(last_error(*make(raw, kind), true), 10.0) << kind;
-  EXPECT_THAT(error_message([&] { make(replaced(raw, "kind = \"prior\", x = [1000.0, 5000.0, 90.0, 5.0], variance = [1e4, 1e4, 1e4, 1e4]",
-                                                "kind = \"two_point\""), "kalman"); }),
+  EXPECT_THAT(error_message([&] {
+                make(replaced(raw, "kind = \"prior\", x = [1000.0, 5000.0, 90.0, 5.0], variance = [1e4, 1e4, 1e4, 1e4]",
+                              "kind = \"two_point\""),
+                     "kalman");
+              }),
               HasSubstr("converted_range_bearing"));
 }
 
@@ -126,11 +133,14 @@ space = "plane"
 measurement = { model = "position", sigma_m = 100.0 }
 transition = { leave_first = 0.05, leave_other = 0.1, to_first = 0.7, period_s = 1.0 }
 )";
-  const std::string two_point = "start = { kind = \"two_point\" }\n", longer = "start = { kind = \"two_point\", rest_sigma = 0.01 }\n";
+  const std::string two_point = "start = { kind = \"two_point\" }\n",
+                    longer = "start = { kind = \"two_point\", rest_sigma = 0.01 }\n";
   const std::string quiet = "{ model = \"constant_velocity\", noise = \"discrete\", sigma_a_mps2 = 1.0 }";
-  const std::string turns = "{ model = \"coordinated_turn\", turn_rates_degps = [-3.0, 3.0], noise = \"discrete\", sigma_a_mps2 = 2.0 }";
+  const std::string turns =
+      "{ model = \"coordinated_turn\", turn_rates_degps = [-3.0, 3.0], noise = \"discrete\", sigma_a_mps2 = 2.0 }";
   const std::string lively = "{ model = \"constant_acceleration\", noise = \"continuous\", q_m2ps5 = 1.0 }";
-  const std::string turning = "{ model = \"turning_target\", turn_rate_noise_degps2 = 0.5, noise = \"discrete\", sigma_a_mps2 = 2.0 }";
+  const std::string turning =
+      "{ model = \"turning_target\", turn_rate_noise_degps2 = 0.5, noise = \"discrete\", sigma_a_mps2 = 2.0 }";
   const auto modes = [](const std::string& a, const std::string& b) { return "modes = [" + a + ", " + b + "]\n"; };
   EXPECT_LT(last_error(*make(head + two_point + modes(quiet, turns), "imm"), false), 5.0);
   const std::string two = replaced(head, "to_first = 0.7, ", "");
@@ -138,12 +148,15 @@ transition = { leave_first = 0.05, leave_other = 0.1, to_first = 0.7, period_s =
   EXPECT_LT(last_error(*make(two + longer + modes(quiet, turning), "imm"), false), 5.0);
   EXPECT_TRUE(make(head + two_point + modes(quiet, turns), "imm")->blocks().mode_probabilities);
   EXPECT_THAT(error_message([&] { make(two + longer + modes(lively, turning), "imm"); }), HasSubstr("one of the two"));
-  EXPECT_THAT(error_message([&] { make(head + two_point + "modes = [" + quiet + "]\n", "imm"); }), HasSubstr("2 to 10"));
-  EXPECT_THAT(error_message([&] {
-                make(replaced(head, "leave_first = 0.05, leave_other = 0.1, to_first = 0.7", "matrix = [0.9, 0.1, 0.3, 0.6]") +
-                         two_point + modes(quiet, quiet), "imm");
-              }),
-              HasSubstr("row 2"));
+  EXPECT_THAT(error_message([&] { make(head + two_point + "modes = [" + quiet + "]\n", "imm"); }),
+              HasSubstr("2 to 10"));
+  EXPECT_THAT(
+      error_message([&] {
+        make(replaced(head, "leave_first = 0.05, leave_other = 0.1, to_first = 0.7", "matrix = [0.9, 0.1, 0.3, 0.6]") +
+                 two_point + modes(quiet, quiet),
+             "imm");
+      }),
+      HasSubstr("row 2"));
 }
 
 // x + beta (z - x): the published estimate alone, with the covariance that belongs to it.
@@ -174,7 +187,8 @@ TEST(KalmanMaker, MakesEveryFormNoiseAndSpace) {
   for (const char* form : {"joseph", "square_root", "conventional"})
     for (const char* noise : {"noise = \"discrete\", sigma_a_mps2 = 1.5", "noise = \"continuous\", q_m2ps3 = 1.5",
                               "noise = \"fixed\", variance = [1.0, 2.0], period_s = 5.0"}) {
-      const std::string text = replaced(kLine, "noise = \"discrete\", sigma_a_mps2 = 1.5", noise) + "form = \"" + form + "\"\n";
+      const std::string text =
+          replaced(kLine, "noise = \"discrete\", sigma_a_mps2 = 1.5", noise) + "form = \"" + form + "\"\n";
       const auto tracker = make(text, "kalman");
       EXPECT_EQ(&tracker->space(), &line_space());
       tracker->step(testing::position(1.0, 0.0));
@@ -188,9 +202,12 @@ TEST(KalmanMaker, RefusesWhatIsNoVariance) {
     return error_message([&] { make(replaced(kLine, from, to), "kalman"); });
   };
   for (const char* bad : {"0.0", "-150.0", "nan", "inf", "\"150\"", "true"}) {
-    EXPECT_THAT(refusal("sigma_m = 150.0", std::string("sigma_m = ") + bad), HasSubstr("trackers.mine.measurement.sigma_m")) << bad;
+    EXPECT_THAT(refusal("sigma_m = 150.0", std::string("sigma_m = ") + bad),
+                HasSubstr("trackers.mine.measurement.sigma_m"))
+        << bad;
     EXPECT_THAT(refusal("sigma_m = 150.0", std::string("variance_m2 = ") + bad), HasSubstr("variance_m2")) << bad;
-    const std::string prior = std::string("start = { kind = \"prior\", x = [0.0, 0.0], variance = [1.0, ") + bad + "] }";
+    const std::string prior =
+        std::string("start = { kind = \"prior\", x = [0.0, 0.0], variance = [1.0, ") + bad + "] }";
     EXPECT_THAT(refusal("start = { kind = \"two_point\" }", prior), HasSubstr("trackers.mine.start.variance")) << bad;
   }
   EXPECT_THAT(refusal("sigma_a_mps2 = 1.5", "sigma_a_mps2 = -1.5"), HasSubstr("motion.sigma_a_mps2"));
@@ -199,8 +216,9 @@ TEST(KalmanMaker, RefusesWhatIsNoVariance) {
 }
 
 TEST(KalmanMaker, RefusesGatesAndLimitsOutOfRange) {
-  for (const char* bad : {"gate_probability = 1.0", "gate_probability = 0.1", "gate_probability = -1", "lost_after_s = 0.0",
-                          "lost_after_s = -5.0", "form = \"josef\"", "space = \"volume\"", "gate = 9.0"})
+  for (const char* bad :
+       {"gate_probability = 1.0", "gate_probability = 0.1", "gate_probability = -1", "lost_after_s = 0.0",
+        "lost_after_s = -5.0", "form = \"josef\"", "space = \"volume\"", "gate = 9.0"})
     EXPECT_THAT(error_message([&] { make(kLine + bad + "\n", "kalman"); }), HasSubstr("study.toml")) << bad;
 }
 
@@ -221,7 +239,8 @@ process_noise_factors = [1.0]
 
 TEST(RawMaker, RefusesWhatDoesNotFit) {
   EXPECT_NE(make("components = [\"position_m\"]\nsigma = [150.0]\n", "raw"), nullptr);
-  EXPECT_THAT(error_message([] { make("components = [\"position_m\"]\nsigma = [150.0, 1.0]\n", "raw"); }), HasSubstr("sigma"));
+  EXPECT_THAT(error_message([] { make("components = [\"position_m\"]\nsigma = [150.0, 1.0]\n", "raw"); }),
+              HasSubstr("sigma"));
   EXPECT_THAT(error_message([] { make("components = []\nsigma = []\n", "raw"); }), HasSubstr("components"));
 }
 

@@ -12,7 +12,7 @@
 namespace truebearing::testing {
 
 inline std::unique_ptr<Scenario> data_scenario(const std::string& name) {
-  return load_scenario(std::string(TRUEBEARING_SOURCE_DIR) + "/data/scenarios/" + name + ".toml");
+  return load_scenario(std::filesystem::path(TRUEBEARING_SOURCE_DIR) / "data/scenarios" / (name + ".toml"));
 }
 
 /// A scenario whose target turns by 90 degrees at 1000 s, own ship on four legs.

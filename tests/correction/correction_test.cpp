@@ -415,7 +415,7 @@ TEST(Correction, RecordTellsNothingThatIsNotItsOwn) {
   EXPECT_EQ(record.correction->base_x.size(), 0) << "and there was no base";
 }
 
-TEST(Correction, ResetAndCloneBeginAnew) {
+TEST(Correction, ResetAndFreshBeginAnew) {
   CorrectedTracker tracker(radar_ensemble(), shared(radar_model(4)));
   for (const Measurement& measurement : radar_log(4, 100)) tracker.step(measurement);
   const auto copy = tracker.fresh();

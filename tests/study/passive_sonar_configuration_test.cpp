@@ -106,7 +106,7 @@ TEST(PassiveSonar, WorksOnBearingsAlone) {
   EXPECT_LT(last_error_m(*tracker, bearings_run(4)), 4000.0);
 }
 
-TEST(PassiveSonar, ClonesGoTheirOwnWay) {
+TEST(PassiveSonar, FreshOnesGoTheirOwnWay) {
   const Recording recording = frequency_run(5);
   const auto tracker =
       make(kSonar + "[batch]\nsolve_every_s = 100.0\n[filter]\nkind = \"imm\"\n" + kModes, "passive_sonar");

@@ -266,21 +266,21 @@ TEST(AngleTrackers, NeighbourIsTheNearestOther) {
   }
 }
 
-TEST(AngleTrackers, ResetAndCloneAreAsNew) {
+TEST(AngleTrackers, ResetAndFreshAreAsNew) {
   const Recording first = three_targets(15, 1), second = three_targets(15, 2);
   for (const Kind& kind : kinds()) {
     const auto fresh = kind.make(3), used = kind.make(3);
     const Published expected = track(*fresh, second.measurements);
     track(*used, first.measurements);
     used->step(first.measurements.front());  // out of order
-    const auto fresh = used->fresh();
+    const auto another = used->fresh();
     used->reset();
     EXPECT_EQ(used->counts().out_of_order, 0) << kind.name;
     EXPECT_TRUE(used->events().empty()) << kind.name;
-    const Published after_reset = track(*used, second.measurements), of_fresh = track(*fresh, second.measurements);
+    const Published after_reset = track(*used, second.measurements), of_another = track(*another, second.measurements);
     for (std::size_t k = 0; k < expected.size(); ++k) {
       expect_same(after_reset[k], expected[k], kind.name);
-      expect_same(of_fresh[k], expected[k], kind.name);
+      expect_same(of_another[k], expected[k], kind.name);
     }
     EXPECT_EQ(&used->space(), &angle_space());
   }

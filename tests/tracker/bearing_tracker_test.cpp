@@ -96,7 +96,7 @@ void expect_it_begins_anew(const Make& make) {
   }
 }
 
-TEST(BearingTracker, ResetAndCloneBeginAnew) {
+TEST(BearingTracker, ResetAndFreshBeginAnew) {
   expect_it_begins_anew([] { return bearing_tracker<LogPolarFilter<>>(); });
   expect_it_begins_anew([] { return testing::range_bank({guessed_range(), 5, 4}); });
 }

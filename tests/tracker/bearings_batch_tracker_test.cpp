@@ -165,7 +165,7 @@ TEST(BearingsBatchTracker, PriorNeedsTheGuessThatItIsTold) {
   EXPECT_GT(records, 0u);
 }
 
-TEST(BearingsBatchTracker, CloneAndResetStartAfresh) {
+TEST(BearingsBatchTracker, FreshAndResetStartAnew) {
   BearingsBatchOptions o = options();
   o.solve_every_s = 60.0;
   o.warm_start = true;

@@ -74,7 +74,7 @@ TEST(Ensemble, EveryMemberSeesEveryMeasurement) {
   }
 }
 
-TEST(Ensemble, CloneBeginsAnewAndIsIndependent) {
+TEST(Ensemble, FreshBeginsAnewAndIsIndependent) {
   Ensemble ensemble;
   ensemble.add("plain", RadarFilter{}.tracker());
   for (const Measurement& measurement : testing::radar_log(2, 30)) ensemble.step(measurement);

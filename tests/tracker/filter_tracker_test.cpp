@@ -347,7 +347,7 @@ TEST(FilterTracker, HostileStreamNeverGivesAnInvalidRecord) {
   }
 }
 
-TEST(FilterTracker, ResetAndCloneBeginAnew) {
+TEST(FilterTracker, ResetAndFreshBeginAnew) {
   RadarFilter radar;
   radar.options = {.gate_nis = 4.0, .lost_after_s = 5.0};
   const auto tracker = radar.tracker();

@@ -65,7 +65,7 @@ TEST(RecordedTracker, RecordsAreThoseOfTheMeasurementsTime) {
   EXPECT_TRUE(recorded.step(position(5.0, 0.0)).empty());
 }
 
-TEST(RecordedTracker, ResetAndCloneBeginAnew) {
+TEST(RecordedTracker, ResetAndFreshBeginAnew) {
   RecordedTracker recorded = replay(kForeign);
   recorded.step(position(4.0, 0.0));
   const auto copy = recorded.fresh();

@@ -196,7 +196,7 @@ TEST(PlanarFlightScenario, KeysAreChecked) {
   EXPECT_THAT(error_of(head + flight + site + "overflight_share = 0.3\n" + sensor),
               HasSubstr("site.overflight_m: is missing"));
   EXPECT_THAT(error_of(head + flight + "roll_out_s = 3\n" + site + sensor), HasSubstr("flight.roll_out_s"));
-  EXPECT_THAT(error_of("output = \"bearing\"\n"), HasSubstr("range, plane"));
+  EXPECT_THAT(error_of("output = \"bearing\"\n"), HasSubstr("plane, range, range_bearing"));
 }
 
 }  // namespace

@@ -15,7 +15,7 @@
 namespace truebearing::testing {
 
 inline Recording array_run(const std::string& name, std::uint64_t run = 0) {
-  return load_scenario(std::string(TRUEBEARING_SOURCE_DIR) + "/data/scenarios/" + name + ".toml")
+  return load_scenario(std::filesystem::path(TRUEBEARING_SOURCE_DIR) / "data/scenarios" / (name + ".toml"))
       ->simulate({1, Role::evaluation, run});
 }
 

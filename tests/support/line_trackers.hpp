@@ -33,6 +33,7 @@ struct RadarFilter {
   FilterTrackerOptions options = {};
 
   RadarMotion motion() const { return {{noise_variance.asDiagonal(), 1.0}}; }
+  KalmanFilter<2> filter() const { return {x0, variance.asDiagonal()}; }
   PositionSensor<1> sensor() const { return {Eigen::Matrix<double, 1, 1>(sigma_m), 1.0}; }
   std::unique_ptr<RadarTracker> tracker() const {
     return std::make_unique<RadarTracker>(line_space(), motion(), sensor(),

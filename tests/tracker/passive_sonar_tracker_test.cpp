@@ -4,6 +4,7 @@
 
 #include "tests/support/fakes.hpp"
 #include "tests/support/frequency_runs.hpp"
+#include "truebearing/filter/filter_kinds.hpp"
 #include "truebearing/filter/interacting_multiple_model.hpp"
 #include "truebearing/filter/kalman.hpp"
 #include "truebearing/tracker/filter_tracker.hpp"

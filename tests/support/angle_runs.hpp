@@ -2,6 +2,7 @@
 // down.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <limits>
 #include <memory>

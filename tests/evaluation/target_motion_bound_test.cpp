@@ -8,7 +8,7 @@
 
 #include "tests/support/error_message.hpp"
 #include "truebearing/core/angle.hpp"
-#include "truebearing/evaluation/time_score.hpp"
+#include "truebearing/evaluation/time_steps.hpp"
 #include "truebearing/simulation/bearings_only_scenario.hpp"
 
 namespace truebearing {

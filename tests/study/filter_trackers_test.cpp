@@ -1,4 +1,4 @@
-#include "truebearing/study/bearing_trackers.hpp"
+#include "truebearing/study/filter_trackers.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

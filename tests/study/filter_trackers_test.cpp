@@ -75,9 +75,10 @@ TEST(BearingTrackers, RefuseWhatBearingsCannotGive) {
   };
   EXPECT_THAT(refusal(kBearings + "start = { kind = \"two_point\" }\n"), HasSubstr("start.kind"));
   EXPECT_THAT(refusal(kBearings + kGuessed + "output_pull = 0.5\n"), HasSubstr("output_pull"));
-  EXPECT_THAT(refusal(kBearings + kGuessed + "form = \"square_root\"\n"), HasSubstr("form"));
+  EXPECT_THAT(refusal(kBearings + kGuessed + "form = \"round\"\n"), HasSubstr("form"));
   EXPECT_THAT(refusal(kBearings + kGuessed + "ranges = 6\n"), HasSubstr("ranges"));
-  EXPECT_THAT(refusal("space = \"plane\"\nmodes = []\n", "imm"), HasSubstr("modes"));
+  EXPECT_THAT(refusal("measurement = { model = \"bearing\", bearing_sigma_deg = 1.0 }\nmodes = []\n", "imm"),
+              HasSubstr("modes"));
 }
 
 TEST(RangeBankMaker, RefusesWhatMakesNoBank) {

@@ -129,12 +129,18 @@ TEST(Study, NamesOfTrackersMustBeThere) {
 TEST(Study, FeaturesThatTheRecordsCannotGiveAreRefused) {
   EXPECT_THAT(refusal("component = \"velocity_mps\"", "component = \"velocity_mph\""),
               HasSubstr("did you mean \"velocity_mps\""));
-  const std::string with_raw =
-      replaced(kStudy, "[trackers.plain]",
-               "[trackers.raw]\nkind = \"raw\"\ncomponents = [\"position_m\", \"velocity_mps\"]\nsigma = "
-               "[150.0, 1.0]\n\n[trackers.plain]");
+  const std::string with_bank = replaced(kStudy, "[trackers.plain]", R"([trackers.bank]
+kind = "kalman_bank"
+motion = { model = "constant_velocity", noise = "fixed", variance = [5.0, 0.1], period_s = 1.0 }
+measurement = { model = "position", variance_m2 = 1e7 }
+start = { x = [0.0, 0.0], variance = [999.0, 999.0] }
+prior_velocities_mps = [0.0]
+measurement_variance_factors = [1.0]
+process_noise_factors = [1.0]
+
+[trackers.plain])");
   const TemporaryFolder folder;
-  const auto path = write_study(folder, replaced(with_raw, "base = \"plain\"", "base = \"raw\""));
+  const auto path = write_study(folder, replaced(with_bank, "base = \"plain\"", "base = \"bank\""));
   EXPECT_THAT(error_message([&] { Study::load(path); }), AllOf(HasSubstr("trackers.nfnn"), HasSubstr("innovation")));
 }
 

@@ -66,16 +66,15 @@ class FilterGroupOf final : public FilterGroup {
   /// motion_of[i]: place in `motions` of member i's.
   FilterGroupOf(std::vector<std::shared_ptr<const Motion>> motions, std::vector<std::size_t> motion_of)
       : motions_(std::move(motions)), motion_of_(std::move(motion_of)), transitions_(motions_.size()) {
-    members_.reserve(motion_of_.size());
-    for (const std::size_t motion : motion_of_) members_.emplace_back(motions_[motion]);
+    members_.assign(motion_of_.size(), Filter(State::Zero(), Covariance::Identity()));
   }
 
   int states() const override { return N; }
   std::size_t size() const override { return members_.size(); }
 
   bool begin(std::size_t i, const double* x, const double* P) override {
-    members_[i].begin(x, P);
-    return members_[i].filter().x().allFinite() && members_[i].filter().P().allFinite();
+    members_[i] = Filter(State(Eigen::Map<const State>(x)), Covariance(Eigen::Map<const Covariance>(P)));
+    return members_[i].x().allFinite() && members_[i].P().allFinite();
   }
 
   bool predict(double dt_s) override {
@@ -85,9 +84,9 @@ class FilterGroupOf final : public FilterGroup {
     for (std::size_t i = 0; i < members_.size(); ++i) {
       const std::size_t m = motion_of_[i];
       if (motions_[m]->is_linear())
-        valid &= members_[i].filter().predict(transitions_[m], dt_s) != StepStatus::failed;
+        valid &= members_[i].predict(transitions_[m], dt_s) != StepStatus::failed;
       else
-        valid &= members_[i].predict(dt_s) != StepStatus::failed;
+        valid &= members_[i].predict(*motions_[m], dt_s) != StepStatus::failed;
     }
     return valid;
   }
@@ -110,27 +109,24 @@ class FilterGroupOf final : public FilterGroup {
   void mix(std::span<const double> weights, double sum, BoundedVector& x, BoundedMatrix& P) const override {
     State mean = State::Zero();
     Covariance spread = Covariance::Zero();
-    for (std::size_t i = 0; i < members_.size(); ++i) mean += weights[i] * members_[i].filter().x();
+    for (std::size_t i = 0; i < members_.size(); ++i) mean += weights[i] * members_[i].x();
     mean /= sum;
     for (std::size_t i = 0; i < members_.size(); ++i) {
       if (weights[i] == 0.0) continue;  // it may be so far off that its spread is not finite
-      const State d = members_[i].filter().x() - mean;
-      spread += weights[i] / sum * (members_[i].filter().P() + d * d.transpose());
+      const State d = members_[i].x() - mean;
+      spread += weights[i] / sum * (members_[i].P() + d * d.transpose());
     }
     x = mean;
     P = spread;
   }
 
-  void assign(const FilterGroup& other) override {
-    const auto& same = static_cast<const FilterGroupOf&>(other);
-    for (std::size_t i = 0; i < members_.size(); ++i) members_[i].copy(same.members_[i]);
-  }
+  void assign(const FilterGroup& other) override { members_ = static_cast<const FilterGroupOf&>(other).members_; }
   std::unique_ptr<FilterGroup> fresh() const override { return std::make_unique<FilterGroupOf>(motions_, motion_of_); }
 
  private:
   template <int M>
-  static double take(FilterState<Filter>& member, const AnyMeasurement& measurement) {
-    const Update<N, M> update = member.updated(static_cast<const SizedMeasurement<M>&>(measurement));
+  static double take(Filter& member, const AnyMeasurement& measurement) {
+    const Update<N, M> update = update_by(member, static_cast<const SizedMeasurement<M>&>(measurement));
     const double gained = -0.5 * (update.nis + log_determinant(update.S));
     return update.status == StepStatus::ok && std::isfinite(gained) ? gained : -std::numeric_limits<double>::infinity();
   }
@@ -138,7 +134,7 @@ class FilterGroupOf final : public FilterGroup {
   std::vector<std::shared_ptr<const Motion>> motions_;
   std::vector<std::size_t> motion_of_;
   std::vector<GivenTransition<N>> transitions_;
-  std::vector<FilterState<Filter>> members_;
+  std::vector<Filter> members_;
 };
 
 }  // namespace truebearing

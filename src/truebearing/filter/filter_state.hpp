@@ -2,7 +2,7 @@
 // for a filter of N states and measurements of M components, whatever the models.
 #pragma once
 
-#include <cmath>
+#include <limits>
 #include <memory>
 #include <type_traits>
 #include <utility>
@@ -15,6 +15,32 @@
 #include "truebearing/motion/any_motion.hpp"
 
 namespace truebearing {
+
+namespace detail {
+
+/// Whether a measured position has a compiled form of its own: of a state on the line or in the plane.
+template <int N, int M>
+inline constexpr bool kHasPositionForm = M == (N <= 3 ? 1 : 2) && N <= 6;
+
+}  // namespace detail
+
+/// A filter's update with a measurement whose model is not known here.
+template <typename Filter, int M>
+Update<Filter::kStates, M> update_by(Filter& filter, const SizedMeasurement<M>& measurement) {
+  constexpr int N = Filter::kStates;
+  if constexpr (requires { filter.update(MeasurementOn<N, M>{measurement}, measurement.z); }) {
+    if constexpr (detail::kHasPositionForm<N, M>)
+      if (measurement.is_position()) return filter.update(PositionOn<N, M>{measurement.R}, measurement.z);
+    return filter.update(MeasurementOn<N, M>{measurement}, measurement.z);
+  } else {
+    if constexpr (M == 1)  // a filter of bearings alone, which asks for more than h and H
+      if (const auto* bearing = dynamic_cast<const ErasedMeasurement<Bearing<>>*>(&measurement))
+        return filter.update(bearing->model(), measurement.z);
+    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+    return {Eigen::Matrix<double, M, 1>::Constant(kNaN), Eigen::Matrix<double, M, M>::Constant(kNaN),
+            Eigen::Matrix<double, N, M>::Constant(kNaN), kNaN, StepStatus::failed};
+  }
+}
 
 template <typename FilterType>
 class FilterState final : public TrackedState {
@@ -42,7 +68,7 @@ class FilterState final : public TrackedState {
     return status;
   }
 
-  StepStatus update(const AnyMeasurement& measurement, StateUpdate& update) override {
+  StepStatus update(const AnyMeasurement& measurement, const StateUpdateTarget& update) override {
     switch (measurement.size()) {
       case 1:
         return take(static_cast<const SizedMeasurement<1>&>(measurement), update);
@@ -55,13 +81,8 @@ class FilterState final : public TrackedState {
     }
   }
 
-  /// The same, with what it leaves behind in fixed sizes.
-  template <int M>
-  Update<N, M> updated(const SizedMeasurement<M>& measurement);
-
-  void assign(const TrackedState& other) override { copy(static_cast<const FilterState&>(other)); }
-  void copy(const FilterState& other) {
-    filter_ = other.filter_;
+  void assign(const TrackedState& other) override {
+    filter_ = static_cast<const FilterState&>(other).filter_;
     show();
   }
 
@@ -85,8 +106,9 @@ class FilterState final : public TrackedState {
   }
 
   template <int M>
-  StepStatus take(const SizedMeasurement<M>& measurement, StateUpdate& update) {
-    const Update<N, M> fixed = updated(measurement);
+  StepStatus take(const SizedMeasurement<M>& measurement, const StateUpdateTarget& update) {
+    const Update<N, M> fixed = update_by(filter_, measurement);
+    show();
     update.nu = fixed.nu;
     update.S = fixed.S;
     update.K = fixed.K;
@@ -104,40 +126,6 @@ class FilterState final : public TrackedState {
 template <typename Filter, MotionModel Motion>
 std::unique_ptr<TrackedState> state_of(Motion motion) {
   return std::make_unique<FilterState<Filter>>(erased(std::move(motion)));
-}
-
-namespace detail {
-
-/// Whether a measured position has a compiled form of its own: of a state on the line or in the plane.
-template <int N, int M>
-inline constexpr bool kHasPositionForm = M == (N <= 3 ? 1 : 2) && N <= 6;
-
-}  // namespace detail
-
-template <typename FilterType>
-template <int M>
-Update<FilterState<FilterType>::N, M> FilterState<FilterType>::updated(const SizedMeasurement<M>& measurement) {
-  Update<N, M> update;
-  if constexpr (requires { filter_.update(MeasurementOn<N, M>{measurement}, measurement.z); }) {
-    if constexpr (detail::kHasPositionForm<N, M>) {
-      if (measurement.is_position()) {
-        update = filter_.update(PositionOn<N, M>{measurement.R}, measurement.z);
-        show();
-        return update;
-      }
-    }
-    update = filter_.update(MeasurementOn<N, M>{measurement}, measurement.z);
-  } else if constexpr (M == 1) {  // a filter of bearings alone, which asks for more than h and H
-    const auto* bearing = dynamic_cast<const ErasedMeasurement<Bearing<>>*>(&measurement);
-    if (bearing)
-      update = filter_.update(bearing->model(), measurement.z);
-    else
-      update.status = StepStatus::failed;
-  } else {
-    update.status = StepStatus::failed;
-  }
-  show();
-  return update;
 }
 
 }  // namespace truebearing

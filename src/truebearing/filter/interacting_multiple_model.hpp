@@ -33,7 +33,7 @@ class InteractingMultipleModel final : public TrackedState {
   StepStatus predict(double dt_s) override;
   /// nu and S are those of the mixture of the modes' predictions, K the probability-weighted gain of the modes. A mode
   /// whose arithmetic fails, where others' does not, has lost; `failed` where all have.
-  StepStatus update(const AnyMeasurement& measurement, StateUpdate& update) override;
+  StepStatus update(const AnyMeasurement& measurement, const StateUpdateTarget& update) override;
   void assign(const TrackedState& other) override;
   const ModeVector* mode_probabilities() const override { return &probabilities_; }
   std::unique_ptr<TrackedState> fresh() const override;
@@ -41,8 +41,8 @@ class InteractingMultipleModel final : public TrackedState {
  private:
   Eigen::Index modes() const { return probabilities_.size(); }
   void mix_all(const ModeMatrix& Pi, const ModeVector& c);
-  void mixture_of_innovations(const ModeVector& log_weight, StateUpdate& combined) const;
-  void show();
+  void mixture_of_innovations(const ModeVector& log_weight, const StateUpdateTarget& combined) const;
+  void refresh() const override;
 
   Modes modes_;
   Modes scratch_;  // what the modes are to become, until all of them have
@@ -51,8 +51,8 @@ class InteractingMultipleModel final : public TrackedState {
   ModeVector predicted_;      // c of the last prediction
   std::array<StateUpdate, kMaxModes> updates_;
   // Mean and covariance of the mixture. What a mode's state lacks is zero in it.
-  BoundedVector x_;
-  BoundedMatrix P_;
+  mutable BoundedVector x_;
+  mutable BoundedMatrix P_;
 };
 
 }  // namespace truebearing

@@ -20,6 +20,18 @@ struct StateUpdate {
   double nis = 0.0;
 };
 
+/// Where an update is to leave that: in a StateUpdate, or in the blocks of a record.
+struct StateUpdateTarget {
+  BoundedVector& nu;
+  BoundedMatrix& S;
+  BoundedMatrix& K;
+  double& nis;
+
+  StateUpdateTarget(BoundedVector& nu_in, BoundedMatrix& S_in, BoundedMatrix& K_in, double& nis_in)
+      : nu(nu_in), S(S_in), K(K_in), nis(nis_in) {}
+  StateUpdateTarget(StateUpdate& update) : nu(update.nu), S(update.S), K(update.K), nis(update.nis) {}  // NOLINT
+};
+
 class TrackedState {
  public:
   using Vector = Eigen::Map<const BoundedVector>;
@@ -27,18 +39,18 @@ class TrackedState {
 
   virtual ~TrackedState() = default;
 
-  int size() const { return size_; }               ///< n
-  Vector x() const { return {x_, size_}; }         ///< (n)
-  Matrix P() const { return {P_, size_, size_}; }  ///< (n x n)
-  const double* x_data() const { return x_; }
-  const double* P_data() const { return P_; }  ///< by columns
+  int size() const { return size_; }                     ///< n
+  Vector x() const { return {x_data(), size_}; }         ///< (n)
+  Matrix P() const { return {P_data(), size_, size_}; }  ///< (n x n)
+  const double* x_data() const { return is_current_ ? x_ : (refresh(), x_); }
+  const double* P_data() const { return is_current_ ? P_ : (refresh(), P_); }  ///< by columns
 
   /// Begins anew with x (n) and P (n x n, by columns).
   virtual void begin(const double* x, const double* P) = 0;
   /// Crosses dt_s seconds. `failed` leaves all as it was.
   virtual StepStatus predict(double dt_s) = 0;
   /// Takes one measurement. `failed` leaves the estimate as it was; nu, S and nis then are what the arithmetic came to.
-  virtual StepStatus update(const AnyMeasurement& measurement, StateUpdate& update) = 0;
+  virtual StepStatus update(const AnyMeasurement& measurement, const StateUpdateTarget& update) = 0;
   /// Becomes a copy of `other`, which was made by fresh() from this one or from the same.
   virtual void assign(const TrackedState& other) = 0;
   /// mu (r) of a multiple-model state, else nullptr.
@@ -55,11 +67,16 @@ class TrackedState {
     x_ = x;
     P_ = P;
   }
+  /// Of a state whose estimate is made when it is asked for: from now on refresh() has to make it.
+  void out_of_date() { is_current_ = false; }
+  void up_to_date() const { is_current_ = true; }
+  virtual void refresh() const {}
 
  private:
   int size_;
   const double* x_ = nullptr;
   const double* P_ = nullptr;
+  mutable bool is_current_ = true;
 };
 
 }  // namespace truebearing

@@ -28,6 +28,7 @@ FilterBank::FilterBank(const StateSpace& space, std::unique_ptr<FilterGroup> gro
       sensors_(std::move(sensors)),
       hypotheses_(std::move(hypotheses)),
       suppose_(std::move(suppose)),
+      of_sensor_(sensors_.size()),
       taken_(hypotheses_.size()),
       gained_(hypotheses_.size()),
       weights_(hypotheses_.size()) {
@@ -120,11 +121,8 @@ StepStatus FilterBank::predict(double dt_s) {
 
 // `failed` where no member can explain the measurement in finite numbers. One that cannot, where others can, has lost.
 StepStatus FilterBank::weigh(const Measurement& measurement) {
-  for (std::size_t s = 0; s < sensors_.size(); ++s) {
-    const AnyMeasurement& taken = sensors_[s]->take(measurement);
-    for (std::size_t i = 0; i < hypotheses_.size(); ++i)
-      if (hypotheses_[i].sensor == s) taken_[i] = &taken;
-  }
+  for (std::size_t s = 0; s < sensors_.size(); ++s) of_sensor_[s] = &sensors_[s]->take(measurement);
+  for (std::size_t i = 0; i < taken_.size(); ++i) taken_[i] = of_sensor_[hypotheses_[i].sensor];
   shown_.filters->update(taken_, gained_);
   double largest = -kInfinity;
   for (std::size_t i = 0; i < gained_.size(); ++i) {

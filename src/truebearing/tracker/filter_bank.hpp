@@ -76,7 +76,8 @@ class FilterBank final : public Tracker {
   std::optional<TargetGuess> guess_;  // the latest since reset
   StepRecord record_;
   // Of one step.
-  std::vector<const AnyMeasurement*> taken_;
+  std::vector<const AnyMeasurement*> of_sensor_;
+  std::vector<const AnyMeasurement*> taken_;  // of each hypothesis
   std::vector<double> gained_;
   std::vector<double> weights_;
 };

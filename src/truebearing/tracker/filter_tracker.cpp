@@ -6,6 +6,18 @@
 #include <utility>
 
 namespace truebearing {
+namespace {
+
+// For optional::emplace(), which by itself would first fill with zeros all that a block has room for.
+struct Unfilled {
+  template <typename Block>
+  operator Block() const {  // NOLINT: that is what it is for
+    Block block;
+    return block;
+  }
+};
+
+}  // namespace
 
 FilterTracker::FilterTracker(const StateSpace& space, std::unique_ptr<TrackedState> state,
                              std::unique_ptr<AnySensor> sensor, Start start, FilterTrackerOptions options)
@@ -145,7 +157,7 @@ StepStatus FilterTracker::predict(double dt_s) {
     ++guard_.counts.failed;
     return StepStatus::failed;
   }
-  Prediction& prediction = record_.prediction.emplace();
+  Prediction& prediction = record_.prediction.emplace(Unfilled());
   copy_published(*predicted_, prediction.x, prediction.P);
   return StepStatus::ok;
 }
@@ -153,31 +165,28 @@ StepStatus FilterTracker::predict(double dt_s) {
 StepStatus FilterTracker::update(const Measurement& measurement) {
   updated_->assign(*predicted_);
   const AnyMeasurement& taken = sensor_->take(measurement);
-  const StepStatus status = updated_->update(taken, update_);
-  if (status == StepStatus::failed || !std::isfinite(update_.nis)) {  // so far off that its square overflows
+  Innovation& innovation = record_.innovation.emplace(Unfilled());
+  BoundedMatrix& gain = record_.gain.emplace();
+  const StepStatus status = updated_->update(taken, {innovation.nu, innovation.S, gain, innovation.nis});
+  if (status == StepStatus::failed || !std::isfinite(innovation.nis)) {  // so far off that its square overflows
     ++guard_.counts.failed;
+    record_.innovation.reset();
+    record_.gain.reset();
     return StepStatus::failed;
   }
-  Innovation& innovation = record_.innovation.emplace();
   innovation.z = taken.value();
-  innovation.nu = update_.nu;
-  innovation.S = update_.S;
-  innovation.nis = update_.nis;
-  if (!gate_.passes(update_.nis)) {
+  if (!gate_.passes(innovation.nis)) {
     ++guard_.counts.gated;
+    record_.gain.reset();
     return StepStatus::rejected;
   }
-  BoundedMatrix& gain = record_.gain.emplace();
-  if (space_->size() == used_->size())
-    gain = update_.K;
-  else
-    gain = update_.K.topRows(space_->size());
   if (options_.output_pull > 0.0) {
     if (taken.size() == 1)
       pull<1>(taken);
     else
       pull<2>(taken);
   }
+  if (space_->size() < used_->size()) gain.conservativeResize(space_->size(), Eigen::NoChange);
   return StepStatus::ok;
 }
 
@@ -196,8 +205,8 @@ void FilterTracker::pull(const AnyMeasurement& measurement) {
   using Vector = Eigen::Matrix<double, M, 1>;
   using Square = Eigen::Matrix<double, M, M>;
   const Vector position = updated_->x().template head<M>();
-  const Square S = update_.S;
-  const Square left = Square::Identity() - Square(update_.K.template topRows<M>());
+  const Square S = record_.innovation->S;
+  const Square left = Square::Identity() - Square(record_.gain->template topRows<M>());
   moved_ = options_.output_pull * (Vector(measurement.value()) - position);
   spread_ = options_.output_pull * options_.output_pull * left * S * left.transpose();
 }

@@ -74,7 +74,6 @@ class FilterTracker : public Successor {
   double used_time_s_ = 0.0;
   std::optional<Measurement> pending_;  // the first of two positions
   std::optional<TargetGuess> guess_;    // the latest since reset, of a tracker of bearings
-  StateUpdate update_;
   StepRecord record_;
   // Of the last step's output_pull.
   BoundedVector moved_;

@@ -25,6 +25,10 @@ struct Case {
   bool splits = true;         // Q(a + b) is that of Q(a) and Q(b): noise continuous in time
 };
 
+void PrintTo(const Case& tested, std::ostream* out) {
+  *out << tested.name;
+}
+
 class TrackerProperty : public ::testing::TestWithParam<Case> {
  protected:
   std::unique_ptr<Tracker> tracker() const {

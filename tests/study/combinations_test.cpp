@@ -76,6 +76,10 @@ struct Combination {
   MotionLayout layout() const { return {measurement.dimensions, measurement.frequency, 1e-6, 1.0}; }
 };
 
+void PrintTo(const Combination& combination, std::ostream* out) {
+  *out << combination.name();
+}
+
 const std::vector<std::string> kLinearFilters{"kalman", "square_root",   "conventional", "unscented",
                                               "imm",    "imm_unscented", "bank"};
 

@@ -22,6 +22,15 @@ function(truebearing_simd_sources)
                               COMPILE_OPTIONS "-fopenmp-simd;-fno-trapping-math;-fno-math-errno;-ffp-contract=fast")
 endfunction()
 
+# truebearing_leave_unsanitized(FILE...): nothing but dense arithmetic, no input and no memory of its own, and long to
+# compile: not instrumented and not optimised where a sanitizer runs. No precompiled header, which is instrumented.
+function(truebearing_leave_unsanitized)
+  if(TRUEBEARING_SANITIZE)
+    set_source_files_properties(${ARGN} TARGET_DIRECTORY truebearing PROPERTIES SKIP_PRECOMPILE_HEADERS ON
+                                COMPILE_OPTIONS "-fno-sanitize=all;-O0")
+  endif()
+endfunction()
+
 # truebearing_precompile(TARGET [HEADER...]): the headers of others that nearly every file reads, and those of its own,
 # parsed once.
 function(truebearing_precompile target)

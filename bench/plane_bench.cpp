@@ -22,7 +22,6 @@
 #include "truebearing/motion/constant_acceleration.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
 #include "truebearing/motion/coordinated_turn.hpp"
-#include "truebearing/motion/one_of.hpp"
 #include "truebearing/motion/singer.hpp"
 #include "truebearing/motion/turning_target.hpp"
 #include "truebearing/tracker/filter_tracker_of.hpp"
@@ -119,14 +118,12 @@ BENCHMARK(extended_polar);
 BENCHMARK(unscented_turning);
 BENCHMARK(unscented_polar);
 
-using Turns = OneOf<Cv, Ct>;
-
 std::unique_ptr<TrackedState> six_models() {
   InteractingMultipleModel::Modes modes;
-  modes.push_back(state_of<KalmanFilter<4>>(Turns{Cv{{0.55}}}));
+  modes.push_back(state_of<KalmanFilter<4>>(Cv{{0.55}}));
   for (const double rate_degps : {-5.0, -2.0, 2.0, 5.0})
-    modes.push_back(state_of<KalmanFilter<4>>(Turns{Ct{{2.1}, rate_degps * 0.0174533}}));
-  modes.push_back(state_of<KalmanFilter<4>>(Turns{Cv{{22.5}}}));
+    modes.push_back(state_of<KalmanFilter<4>>(Ct{{2.1}, rate_degps * 0.0174533}));
+  modes.push_back(state_of<KalmanFilter<4>>(Cv{{22.5}}));
   return std::make_unique<InteractingMultipleModel>(std::move(modes), star_chain(6, 0.037, 0.084, 0.7, 1.0));
 }
 

@@ -12,6 +12,7 @@
 #include "truebearing/core/chi_square.hpp"
 #include "truebearing/core/covariance.hpp"
 #include "truebearing/core/random.hpp"
+#include "truebearing/core/with_count.hpp"
 #include "truebearing/filter/factorization.hpp"
 #include "truebearing/study/motion_kinds.hpp"
 #include "truebearing/study/tracker_registry.hpp"
@@ -171,20 +172,9 @@ void move(const AnyMotion& any, RandomStream& random, Eigen::VectorXd& x) {
 }
 
 void move(const AnyMotion& motion, RandomStream& random, Eigen::VectorXd& x) {
-  switch (motion.states()) {
-    case 2:
-      return move<2>(motion, random, x);
-    case 3:
-      return move<3>(motion, random, x);
-    case 4:
-      return move<4>(motion, random, x);
-    case 5:
-      return move<5>(motion, random, x);
-    case 6:
-      return move<6>(motion, random, x);
-    default:
-      return move<7>(motion, random, x);
-  }
+  with_count(motion.states(), [&]<int N>(std::integral_constant<int, N>) {
+    if constexpr (N > 0) move<N>(motion, random, x);
+  });
 }
 
 // What the sensor of the combination measures of x at time k, `noise` times its noise. It weaves, so that bearings tell

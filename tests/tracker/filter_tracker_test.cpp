@@ -1,12 +1,14 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "tests/support/line_trackers.hpp"
 #include "truebearing/core/chi_square.hpp"
 #include "truebearing/core/covariance.hpp"
+#include "truebearing/tracker/bearing_sensor.hpp"
 
 namespace truebearing {
 namespace {
@@ -43,6 +45,21 @@ TEST(FilterTracker, PriorBelongsToItsTime) {
   EXPECT_EQ(record.innovation->nis, update.nis);
   EXPECT_EQ(record.innovation->z[0], 700.0);
   EXPECT_EQ(*record.gain, update.K);
+}
+
+TEST(FilterTracker, PartsThatDoNotFitAreRefused) {
+  const RadarFilter radar;
+  const auto made = [&](const StateSpace& space, const Start& start, FilterTrackerOptions options = {}) {
+    return RadarTracker(space, radar.motion(), radar.sensor(), start, options);
+  };
+  EXPECT_NO_THROW(made(line_space(), TwoPointStart{}));
+  EXPECT_THROW(made(line_space(), PriorStart{Eigen::Vector3d::Zero(), Eigen::Matrix3d::Identity()}),
+               std::invalid_argument);
+  EXPECT_THROW(made(line_space(), RangePrior{}), std::invalid_argument) << "positions tell no bearing";
+  EXPECT_THROW(made(plane_space(), TwoPointStart{}), std::invalid_argument) << "two states are no plane";
+  using OfBearings = FilterTrackerOf<KalmanFilter<2>, testing::RadarMotion, BearingSensor>;
+  EXPECT_THROW(OfBearings(line_space(), radar.motion(), BearingSensor{}, HandOverStart{}), std::invalid_argument)
+      << "a bearing is of four states";
 }
 
 TEST(FilterTracker, TwoMeasurementsMakeAState) {

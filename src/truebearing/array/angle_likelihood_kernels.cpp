@@ -4,6 +4,7 @@
 
 #include "truebearing/array/simd_lanes.hpp"
 #include "truebearing/core/simd_dispatch.hpp"
+#include "truebearing/core/with_count.hpp"
 
 namespace truebearing::kernels {
 namespace {

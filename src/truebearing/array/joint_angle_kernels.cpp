@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "truebearing/core/simd_dispatch.hpp"
+#include "truebearing/core/with_count.hpp"
 
 namespace truebearing::kernels {
 namespace {

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+
 #include "truebearing/core/bounded.hpp"
 #include "truebearing/measurement/measurement_model.hpp"
 
@@ -17,31 +18,28 @@ class AnyMeasurement {
  public:
   virtual ~AnyMeasurement() = default;
 
-  int size() const { return size_; }        ///< m
-  int leading() const { return leading_; }  ///< k: it looks at the first k components of a state
+  int size() const { return size_; }  ///< m
   /// z = x_1..m + v: H = [I, 0].
   bool is_position() const { return is_position_; }
-  Eigen::Map<const BoundedVector> value() const { return {z_, size_}; }              ///< z (m)
-  Eigen::Map<const BoundedMatrix> covariance() const { return {R_, size_, size_}; }  ///< R (m x m)
+  Eigen::Map<const BoundedVector> value() const { return {z_, size_}; }  ///< z (m)
 
  protected:
-  AnyMeasurement(int size, int leading, bool is_position, const double* z, const double* R)
-      : size_(size), leading_(leading), is_position_(is_position), z_(z), R_(R) {}
+  AnyMeasurement(int size, bool is_position, const double* z) : size_(size), is_position_(is_position), z_(z) {}
   AnyMeasurement(const AnyMeasurement&) = delete;
   AnyMeasurement& operator=(const AnyMeasurement&) = delete;
 
  private:
   int size_;
-  int leading_;
   bool is_position_;
   const double* z_;
-  const double* R_;
 };
 
-/// A measurement of length M. `x` points to a state of at least leading() components.
+/// A measurement of length M. `x` points to a state that begins with the k components of the model's own.
 template <int M>
 class SizedMeasurement : public AnyMeasurement {
  public:
+  static_assert(M >= 1 && M <= kMaxMeasurements);
+  static constexpr int kMeasurements = M;
   using Vector = Eigen::Matrix<double, M, 1>;
   using Covariance = Eigen::Matrix<double, M, M>;
 
@@ -49,15 +47,15 @@ class SizedMeasurement : public AnyMeasurement {
   Covariance R;
 
   virtual Vector h(const double* x) const = 0;
-  /// The first leading() columns of H or g (m x k), by columns; the others are zero.
+  /// The first k columns of H or g (m x k), by columns; the others are zero.
   virtual void H(const double* x, double* jacobian) const = 0;
   /// H of a model without a modified gain.
   virtual void modified_gain(const double* x, double* g) const = 0;
   virtual Vector residual(const Vector& a, const Vector& b) const = 0;
 
  protected:
-  SizedMeasurement(int leading, bool is_position)
-      : AnyMeasurement(M, leading, is_position, z.data(), R.data()), z(Vector::Zero()), R(Covariance::Identity()) {}
+  explicit SizedMeasurement(bool is_position)
+      : AnyMeasurement(M, is_position, z.data()), z(Vector::Zero()), R(Covariance::Identity()) {}
 };
 
 /// A measurement with a model of a known type. z, R and the model belong together: set() makes them so.
@@ -71,7 +69,7 @@ class ErasedMeasurement final : public SizedMeasurement<Model::kMeasurements> {
   using typename SizedMeasurement<M>::Vector;
 
   /// Of nothing yet: set() comes first.
-  explicit ErasedMeasurement(bool is_position) : SizedMeasurement<M>(Model::kStates, is_position) {}
+  explicit ErasedMeasurement(bool is_position) : SizedMeasurement<M>(is_position) {}
   ErasedMeasurement(const Model& model, const Vector& value, bool is_position = false)
       : ErasedMeasurement(is_position) {
     set(model, value);
@@ -132,24 +130,18 @@ struct MeasurementOn {
   Vector residual(const Vector& a, const Vector& b) const { return measurement.residual(a, b); }
 };
 
-/// The same of a measured position, whose H = [I, 0] the compiler knows.
-template <int N, int M>
-struct PositionOn {
-  using Scalar = double;
-  static constexpr int kStates = N;
-  static constexpr int kMeasurements = M;
-  using State = Eigen::Matrix<double, N, 1>;
-  using Vector = Eigen::Matrix<double, M, 1>;
-  using Jacobian = Eigen::Matrix<double, M, N>;
-  using Covariance = Eigen::Matrix<double, M, M>;
-
-  const Covariance& covariance;
-
-  Vector h(const State& x) const { return x.template head<M>(); }
-  Jacobian H(const State&) const { return Jacobian::Identity(); }
-  Jacobian modified_gain(const Vector&, const State&) const { return Jacobian::Identity(); }
-  const Covariance& R() const { return covariance; }
-  Vector residual(const Vector& a, const Vector& b) const { return a - b; }
-};
+/// use(measurement) with its length known.
+template <typename Use>
+auto with_length(const AnyMeasurement& measurement, const Use& use) {
+  static_assert(kMaxMeasurements == 3);
+  switch (measurement.size()) {
+    case 1:
+      return use(static_cast<const SizedMeasurement<1>&>(measurement));
+    case 2:
+      return use(static_cast<const SizedMeasurement<2>&>(measurement));
+    default:
+      return use(static_cast<const SizedMeasurement<3>&>(measurement));
+  }
+}
 
 }  // namespace truebearing

@@ -92,18 +92,8 @@ class FilterGroupOf final : public FilterGroup {
   }
 
   void update(std::span<const AnyMeasurement* const> measurements, std::span<double> gained) override {
-    for (std::size_t i = 0; i < members_.size(); ++i) {
-      switch (measurements[i]->size()) {
-        case 1:
-          gained[i] = take<1>(members_[i], *measurements[i]);
-          break;
-        case 2:
-          gained[i] = take<2>(members_[i], *measurements[i]);
-          break;
-        default:
-          gained[i] = take<3>(members_[i], *measurements[i]);
-      }
-    }
+    for (std::size_t i = 0; i < members_.size(); ++i)
+      gained[i] = with_length(*measurements[i], [&](const auto& sized) { return take(members_[i], sized); });
   }
 
   void mix(std::span<const double> weights, double sum, BoundedVector& x, BoundedMatrix& P) const override {
@@ -125,8 +115,8 @@ class FilterGroupOf final : public FilterGroup {
 
  private:
   template <int M>
-  static double take(Filter& member, const AnyMeasurement& measurement) {
-    const Update<N, M> update = update_by(member, static_cast<const SizedMeasurement<M>&>(measurement));
+  static double take(Filter& member, const SizedMeasurement<M>& measurement) {
+    const Update<N, M> update = update_by(member, measurement);
     const double gained = -0.5 * (update.nis + log_determinant(update.S));
     return update.status == StepStatus::ok && std::isfinite(gained) ? gained : -std::numeric_limits<double>::infinity();
   }

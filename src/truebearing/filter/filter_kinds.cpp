@@ -3,6 +3,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "truebearing/core/with_count.hpp"
+
 namespace truebearing {
 namespace {
 
@@ -20,12 +22,11 @@ using ModifiedGain = ModifiedGainFilter<N>;
 // make(std::integral_constant<int, states>()), nullptr where nothing is compiled for that many.
 template <int kLeast, typename Made, typename Make>
 std::unique_ptr<Made> by_length(int states, const Make& make) {
-  constexpr int kLengths = 8 - kLeast;
+  constexpr int kMost = 7;
   std::unique_ptr<Made> made;
-  [&]<int... I>(std::integer_sequence<int, I...>) {
-    ((states == kLeast + I ? void(made = make(std::integral_constant<int, kLeast + I>())) : void()), ...);
-  }
-  (std::make_integer_sequence<int, kLengths>());
+  with_count(states, [&]<int N>(std::integral_constant<int, N> n) {
+    if constexpr (N >= kLeast && N <= kMost) made = make(n);
+  });
   return made;
 }
 

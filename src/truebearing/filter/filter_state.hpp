@@ -12,6 +12,8 @@
 #include "truebearing/filter/tracked_state.hpp"
 #include "truebearing/filter/update.hpp"
 #include "truebearing/measurement/bearing.hpp"
+#include "truebearing/measurement/cartesian_position.hpp"
+#include "truebearing/measurement/longer_state.hpp"
 #include "truebearing/motion/any_motion.hpp"
 
 namespace truebearing {
@@ -29,8 +31,12 @@ template <typename Filter, int M>
 Update<Filter::kStates, M> update_by(Filter& filter, const SizedMeasurement<M>& measurement) {
   constexpr int N = Filter::kStates;
   if constexpr (requires { filter.update(MeasurementOn<N, M>{measurement}, measurement.z); }) {
-    if constexpr (detail::kHasPositionForm<N, M>)
-      if (measurement.is_position()) return filter.update(PositionOn<N, M>{measurement.R}, measurement.z);
+    // Of a measured position the compiler knows H = [I, 0].
+    if constexpr (detail::kHasPositionForm<N, M>) {
+      const auto position = on_state<N>(CartesianPosition<M>{measurement.R});
+      if constexpr (requires { filter.update(position, measurement.z); })
+        if (measurement.is_position()) return filter.update(position, measurement.z);
+    }
     return filter.update(MeasurementOn<N, M>{measurement}, measurement.z);
   } else {
     if constexpr (M == 1)  // a filter of bearings alone, which asks for more than h and H
@@ -55,7 +61,6 @@ class FilterState final : public TrackedState {
       : TrackedState(N), motion_(std::move(motion)), filter_(State::Zero(), Covariance::Identity()) {
     show();
   }
-  FilterState(const FilterState& other) : TrackedState(N), motion_(other.motion_), filter_(other.filter_) { show(); }
 
   void begin(const double* x, const double* P) override {
     filter_ = Filter(State(Eigen::Map<const State>(x)), Covariance(Eigen::Map<const Covariance>(P)));
@@ -69,16 +74,7 @@ class FilterState final : public TrackedState {
   }
 
   StepStatus update(const AnyMeasurement& measurement, const StateUpdateTarget& update) override {
-    switch (measurement.size()) {
-      case 1:
-        return take(static_cast<const SizedMeasurement<1>&>(measurement), update);
-      case 2:
-        return take(static_cast<const SizedMeasurement<2>&>(measurement), update);
-      case 3:
-        return take(static_cast<const SizedMeasurement<3>&>(measurement), update);
-      default:
-        return StepStatus::failed;
-    }
+    return with_length(measurement, [&](const auto& sized) { return take(sized, update); });
   }
 
   void assign(const TrackedState& other) override {
@@ -87,10 +83,6 @@ class FilterState final : public TrackedState {
   }
 
   std::unique_ptr<TrackedState> fresh() const override { return std::make_unique<FilterState>(motion_); }
-
-  const Motion& motion() const { return *motion_; }
-  Filter& filter() { return filter_; }
-  const Filter& filter() const { return filter_; }
 
  private:
   static constexpr bool kCarriesP = std::is_reference_v<decltype(std::declval<const Filter&>().P())>;

@@ -4,96 +4,72 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 #include "truebearing/core/covariance.hpp"
+#include "truebearing/core/with_count.hpp"
 
 namespace truebearing {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// A mode's estimate in the space of another mode's N states: what it lacks is taken from that mode's own.
+// The estimates of all modes in the space of one mode's N states: what another lacks is taken from that mode's own.
 template <int N>
-struct InSpaceOf {
+class InSpaceOf {
+ public:
   using State = Eigen::Matrix<double, N, 1>;
   using Covariance = Eigen::Matrix<double, N, N>;
 
-  State own_x;
-  Covariance own_P;
-
-  State x(const TrackedState& other) const {
-    State x = own_x;
-    const int shared = std::min(N, other.size());
-    for (int i = 0; i < shared; ++i) x(i) = other.x_data()[i];
-    return x;
+  InSpaceOf(const TrackedState& own, const InteractingMultipleModel::Modes& modes) {
+    for (std::size_t i = 0; i < modes.size(); ++i) {
+      seen_[i] = {modes[i]->x_data(), modes[i]->P_data()};
+      if (modes[i]->size() != N) fit(own, *modes[i], i);
+    }
   }
 
-  Covariance P(const TrackedState& other) const {
-    Covariance P = own_P;
+  Eigen::Map<const State> x(std::size_t i) const { return Eigen::Map<const State>(seen_[i].x); }
+  Eigen::Map<const Covariance> P(std::size_t i) const { return Eigen::Map<const Covariance>(seen_[i].P); }
+
+ private:
+  struct Seen {
+    const double* x;
+    const double* P;
+  };
+
+  void fit(const TrackedState& own, const TrackedState& other, std::size_t i) {
     const int shared = std::min(N, other.size());
-    for (int j = 0; j < N; ++j)
-      for (int i = 0; i < N; ++i) {
-        if (i < shared && j < shared)
-          P(i, j) = other.P_data()[j * other.size() + i];
-        else if (i < shared || j < shared)
-          P(i, j) = 0.0;
-      }
-    return P;
+    fitted_x_[i] = Eigen::Map<const State>(own.x_data());
+    fitted_x_[i].head(shared) = other.x().head(shared);
+    Covariance& P = fitted_P_[i];
+    P = Eigen::Map<const Covariance>(own.P_data());
+    P.leftCols(shared).setZero();
+    P.topRows(shared).setZero();
+    P.topLeftCorner(shared, shared) = other.P().topLeftCorner(shared, shared);
+    seen_[i] = {fitted_x_[i].data(), P.data()};
   }
+
+  std::array<Seen, kMaxModes> seen_;
+  std::array<State, kMaxModes> fitted_x_;
+  std::array<Covariance, kMaxModes> fitted_P_;
 };
 
 // Equations (11.6.6-8) to (-10): `mixed` begins with the mixture that mode `own` of N states sees.
 template <int N>
-void mix(const ModeVector& weights, const std::vector<std::unique_ptr<TrackedState>>& modes, const TrackedState& own,
+void mix(const ModeVector& weights, const InteractingMultipleModel::Modes& modes, const TrackedState& own,
          TrackedState& mixed) {
-  using Space = InSpaceOf<N>;
-  const Space space{Eigen::Map<const typename Space::State>(own.x_data()),
-                    Eigen::Map<const typename Space::Covariance>(own.P_data())};
-  typename Space::State mean = Space::State::Zero();
-  for (std::size_t i = 0; i < modes.size(); ++i) {
-    const double weight = weights[static_cast<Eigen::Index>(i)];
-    if (modes[i]->size() == N)
-      mean += weight * Eigen::Map<const typename Space::State>(modes[i]->x_data());
-    else
-      mean += weight * space.x(*modes[i]);
-  }
-  typename Space::Covariance P = Space::Covariance::Zero();
+  const InSpaceOf<N> space(own, modes);
+  typename InSpaceOf<N>::State mean = InSpaceOf<N>::State::Zero();
+  for (std::size_t i = 0; i < modes.size(); ++i) mean += weights[static_cast<Eigen::Index>(i)] * space.x(i);
+  typename InSpaceOf<N>::Covariance P = InSpaceOf<N>::Covariance::Zero();
   for (std::size_t i = 0; i < modes.size(); ++i) {
     const double weight = weights[static_cast<Eigen::Index>(i)];
     if (weight == 0.0) continue;
-    if (modes[i]->size() == N) {
-      const typename Space::State d = Eigen::Map<const typename Space::State>(modes[i]->x_data()) - mean;
-      P += weight * (Eigen::Map<const typename Space::Covariance>(modes[i]->P_data()) + d * d.transpose());
-    } else {
-      const typename Space::State d = space.x(*modes[i]) - mean;
-      P += weight * (space.P(*modes[i]) + d * d.transpose());
-    }
+    const typename InSpaceOf<N>::State d = space.x(i) - mean;
+    P += weight * (space.P(i) + d * d.transpose());
   }
   mixed.begin(mean.data(), P.data());
-}
-
-void mix(const ModeVector& weights, const std::vector<std::unique_ptr<TrackedState>>& modes, const TrackedState& own,
-         TrackedState& mixed) {
-  static_assert(kMaxDimension == 8);
-  switch (own.size()) {
-    case 2:
-      return mix<2>(weights, modes, own, mixed);
-    case 3:
-      return mix<3>(weights, modes, own, mixed);
-    case 4:
-      return mix<4>(weights, modes, own, mixed);
-    case 5:
-      return mix<5>(weights, modes, own, mixed);
-    case 6:
-      return mix<6>(weights, modes, own, mixed);
-    case 7:
-      return mix<7>(weights, modes, own, mixed);
-    case 8:
-      return mix<8>(weights, modes, own, mixed);
-    default:
-      return mix<1>(weights, modes, own, mixed);
-  }
 }
 
 // In fixed sizes, which take half the time.
@@ -157,7 +133,10 @@ void InteractingMultipleModel::mix_all(const ModeMatrix& Pi, const ModeVector& c
       weights /= c[j];
     else
       weights = ModeVector::Unit(modes(), j);  // a mode that cannot be entered keeps to itself
-    mix(weights, modes_, *modes_[static_cast<std::size_t>(j)], *scratch_[static_cast<std::size_t>(j)]);
+    const TrackedState& own = *modes_[static_cast<std::size_t>(j)];
+    with_count(own.size(), [&]<int N>(std::integral_constant<int, N>) {
+      if constexpr (N > 0) mix<N>(weights, modes_, own, *scratch_[static_cast<std::size_t>(j)]);
+    });
   }
 }
 

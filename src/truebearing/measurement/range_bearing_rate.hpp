@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include "truebearing/measurement/measured.hpp"
 #include "truebearing/measurement/range_bearing.hpp"
 
 namespace truebearing {
@@ -20,6 +21,8 @@ struct RangeBearingRate {
   using Jacobian = Eigen::Matrix<Scalar, kMeasurements, kStates>;
   using Covariance = Eigen::Matrix<Scalar, kMeasurements, kMeasurements>;
   using Plane = Eigen::Matrix<Scalar, 2, 1>;
+
+  static Measured measured() { return {"range_bearing_rate", {"range_m", "bearing_deg", "range_rate_mps"}}; }
 
   Plane site_m;             ///< of the sensor: East, North
   Plane site_velocity_mps;  ///< of the sensor

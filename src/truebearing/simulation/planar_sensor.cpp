@@ -5,6 +5,7 @@
 
 #include "truebearing/core/angle.hpp"
 #include "truebearing/core/linear_algebra.hpp"
+#include "truebearing/measurement/range_bearing_rate.hpp"
 
 namespace truebearing {
 
@@ -32,7 +33,7 @@ const std::vector<PlanarOutput>& table() {
        {"bearing_sigma_deg"},
        1},
       {"range_bearing_rate",
-       {"range_bearing_rate", {"range_m", "bearing_deg", "range_rate_mps"}},
+       RangeBearingRate<>::measured(),
        [](const Eigen::Vector4d& state) -> BoundedVector {
          const Eigen::Vector2d position = state.head<2>();
          return Eigen::Vector3d(position.norm(), bearing_of(state), state.tail<2>().dot(position.stableNormalized()));

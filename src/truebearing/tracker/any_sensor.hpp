@@ -32,7 +32,8 @@ class AnySensor {
   virtual ~AnySensor() = default;
 
   virtual Measured measured() const = 0;
-  virtual int size() const = 0;  ///< m
+  virtual int size() const = 0;    ///< m
+  virtual int states() const = 0;  ///< k: the model looks at the first k components of a state
   virtual bool measures_position() const = 0;
   virtual bool tells_position() const = 0;  ///< fix() does
   virtual bool tells_bearing() const = 0;   ///< sight() and believe() do
@@ -57,6 +58,7 @@ class SensorOf final : public AnySensor {
 
   Measured measured() const override { return sensor_.measured(); }
   int size() const override { return Model::kMeasurements; }
+  int states() const override { return Model::kStates; }
   bool measures_position() const override { return Sensor::kMeasuresPosition; }
   bool tells_position() const override { return kTellsPosition; }
   bool tells_bearing() const override { return kTellsBearing; }

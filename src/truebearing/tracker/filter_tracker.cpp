@@ -43,7 +43,8 @@ void FilterTracker::check() const {
     throw std::invalid_argument("a start from a range needs measured bearings");
   if (options_.output_pull > 0.0 && !sensor_->measures_position())
     throw std::invalid_argument("output_pull needs measured positions");
-  if (space_->size() > used_->size()) throw std::invalid_argument("the state is shorter than its space");
+  if (space_->size() > used_->size() || sensor_->states() > used_->size())
+    throw std::invalid_argument("the state is shorter than its space, or than what the sensor looks at");
 }
 
 std::span<const StepRecord> FilterTracker::step(const Measurement& measurement) {
@@ -180,12 +181,7 @@ StepStatus FilterTracker::update(const Measurement& measurement) {
     record_.gain.reset();
     return StepStatus::rejected;
   }
-  if (options_.output_pull > 0.0) {
-    if (taken.size() == 1)
-      pull<1>(taken);
-    else
-      pull<2>(taken);
-  }
+  if (options_.output_pull > 0.0) with_length(taken, [&](const auto& sized) { pull(sized); });
   if (space_->size() < used_->size()) gain.conservativeResize(space_->size(), Eigen::NoChange);
   return StepStatus::ok;
 }
@@ -201,13 +197,13 @@ std::span<const StepRecord> FilterTracker::refuse() {
 // With the gain K' = K + beta G (I - H K), G = [I; 0], in place of K: the covariance grows by (K' - K) S (K' - K)'.
 // H = [I, 0].
 template <int M>
-void FilterTracker::pull(const AnyMeasurement& measurement) {
+void FilterTracker::pull(const SizedMeasurement<M>& measurement) {
   using Vector = Eigen::Matrix<double, M, 1>;
   using Square = Eigen::Matrix<double, M, M>;
   const Vector position = updated_->x().template head<M>();
   const Square S = record_.innovation->S;
   const Square left = Square::Identity() - Square(record_.gain->template topRows<M>());
-  moved_ = options_.output_pull * (Vector(measurement.value()) - position);
+  moved_ = options_.output_pull * (measurement.z - position);
   spread_ = options_.output_pull * options_.output_pull * left * S * left.transpose();
 }
 

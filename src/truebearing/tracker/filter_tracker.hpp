@@ -31,7 +31,8 @@ struct FilterTrackerOptions {
 class FilterTracker : public Successor {
  public:
   /// A PriorStart has as many components as the state. Throws std::invalid_argument where the parts do not fit: a start
-  /// that the sensor cannot tell, an output_pull without measured positions, a space longer than the state.
+  /// that the sensor cannot tell, an output_pull without measured positions, a state shorter than its space or than what
+  /// the sensor looks at.
   FilterTracker(const StateSpace& space, std::unique_ptr<TrackedState> state, std::unique_ptr<AnySensor> sensor,
                 Start start, FilterTrackerOptions options = {});
 
@@ -55,7 +56,7 @@ class FilterTracker : public Successor {
   StepStatus update(const Measurement& measurement);
   std::span<const StepRecord> refuse();
   template <int M>
-  void pull(const AnyMeasurement& measurement);
+  void pull(const SizedMeasurement<M>& measurement);
   std::span<const StepRecord> publish(const TrackedState& state);
   void clear_blocks();
   void copy_published(const TrackedState& state, BoundedVector& x, BoundedMatrix& P) const;

@@ -27,7 +27,7 @@ struct RangeBearingRateSensor {
     return {from.position_m, from.velocity_mps, s[0], s[1], s[2]};
   }
   Model::Vector value(const Measurement& measurement) const { return measurement.z; }
-  Measured measured() const { return {"range_bearing_rate", {"range_m", "bearing_deg", "range_rate_mps"}}; }
+  Measured measured() const { return Model::measured(); }
   /// Range and bearing, converted without bias; the range rate tells no velocity across.
   PositionFix fix(const Measurement& measurement) const {
     const Model here = model(measurement);

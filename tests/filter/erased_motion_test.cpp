@@ -1,0 +1,65 @@
+#include "truebearing/filter/erased_motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include "truebearing/filter/kalman.hpp"
+#include "truebearing/motion/coordinated_turn.hpp"
+#include "truebearing/motion/turning_target.hpp"
+
+namespace truebearing {
+namespace {
+
+using Turn = CoordinatedTurn<DiscreteWhiteNoise>;
+using Turning = TurningTarget<DiscreteWhiteNoise>;
+
+template <int N>
+Eigen::Matrix<double, N, N> some_covariance() {
+  Eigen::Matrix<double, N, N> A;
+  for (Eigen::Index i = 0; i < A.size(); ++i) A(i) = std::sin(12.9898 * static_cast<double>(i + 1));
+  return A * A.transpose() + Eigen::Matrix<double, N, N>::Identity();
+}
+
+TEST(ErasedMotion, IsTheModelThatItHolds) {
+  const Turn turn{{2.0}, 0.1};
+  const auto motion = erased(turn, "nothing");
+  const Eigen::Vector4d x(1.0, 2.0, 3.0, 4.0);
+  EXPECT_TRUE(motion->is_linear());
+  EXPECT_EQ(motion->states(), 4);
+  EXPECT_EQ(motion->rest(), "nothing");
+  EXPECT_EQ(motion->F(x, 0.5), turn.F(0.5));
+  EXPECT_EQ(motion->Q(0.5), turn.Q(0.5));
+  EXPECT_EQ(motion->f(x, 0.5), product(turn.F(0.5), x));
+}
+
+// A filter under the model and one under the interface do the same, to the bit.
+template <typename Motion>
+void expect_same_prediction(const Motion& model) {
+  constexpr int N = Motion::kStates;
+  using Filter = KalmanFilter<N>;
+  typename Filter::State x;
+  for (int i = 0; i < N; ++i) x(i) = 0.1 * (i + 1);
+  Filter direct(x, some_covariance<N>()), through(x, some_covariance<N>());
+  const std::shared_ptr<const SizedMotion<N>> motion = erased(model);
+  for (int k = 0; k < 5; ++k) {
+    ASSERT_EQ(direct.predict(model, 0.7), StepStatus::ok);
+    ASSERT_EQ(through.predict(*motion, 0.7), StepStatus::ok);
+    EXPECT_EQ(through.x(), direct.x());
+    EXPECT_EQ(through.P(), direct.P());
+  }
+}
+
+TEST(ErasedMotion, PredictsAsTheModelDoes) {
+  expect_same_prediction(Turn{{2.0}, 0.1});
+  expect_same_prediction(Turning{{2.0}, 0.01});
+}
+
+TEST(ErasedMotion, OfNoCovarianceFailsAndLeavesTheEstimate) {
+  const auto motion = erased(Turn{{2.0}, 0.1});
+  const Eigen::Vector4d x(1.0, 2.0, 3.0, 4.0);
+  KalmanFilter<4> filter(x, Eigen::Matrix4d::Identity());
+  EXPECT_EQ(filter.predict(*motion, std::nan("")), StepStatus::failed);
+  EXPECT_EQ(filter.x(), x);
+}
+
+}  // namespace
+}  // namespace truebearing

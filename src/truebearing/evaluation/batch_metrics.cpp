@@ -13,9 +13,8 @@ class BatchRun final : public BatchFigures {
   explicit BatchRun(const std::vector<int>& steps) : steps_(steps) { at_times.resize(steps.size()); }
 
   void take(const ScoredStep& scored) override {
-    // A corrected record has the outcome of its base, which is shown by itself.
     const StepRecord* record = scored.records.front();
-    if (!record || record->correction) return;
+    if (!record) return;
     for (std::size_t time = 0; time < steps_.size(); ++time)
       if (steps_[time] == static_cast<int>(scored.step)) at_times[time] = record->batch;
   }

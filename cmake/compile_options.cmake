@@ -31,8 +31,30 @@ function(truebearing_leave_unsanitized)
   endif()
 endfunction()
 
-# truebearing_precompile(TARGET [HEADER...]): the headers of others that nearly every file reads, and those of its own,
-# parsed once.
+# truebearing_build_by_room(TARGET [ALONE file...]): with TRUEBEARING_BUILD_BY_ROOM the files of one folder are one
+# translation unit, since most of a file's time goes into the headers and templates that its neighbours read too. Alone
+# stay those that are long by themselves and those with options of their own. Names without a linkage are therefore
+# unique within a room; the dev preset compiles file by file and shows which include is missing.
+function(truebearing_build_by_room target)
+  if(NOT TRUEBEARING_BUILD_BY_ROOM)
+    return()
+  endif()
+  cmake_parse_arguments(PARSE_ARGV 1 room "" "" ALONE)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  get_target_property(sources ${target} SOURCES)
+  foreach(source IN LISTS sources)
+    cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
+    cmake_path(GET source FILENAME file)
+    cmake_path(GET source PARENT_PATH folder)
+    cmake_path(GET folder FILENAME folder)
+    if(NOT file IN_LIST room_ALONE)
+      set_source_files_properties(${source} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${folder})
+    endif()
+  endforeach()
+endfunction()
+
+# truebearing_precompile(TARGET): the headers of others that nearly every file reads, parsed once. Not worth its while
+# where a few translation units are the whole target.
 function(truebearing_precompile target)
-  target_precompile_headers(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src/precompiled.hpp ${ARGN})
+  target_precompile_headers(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src/precompiled.hpp)
 endfunction()

@@ -24,8 +24,8 @@ class TunedTracker {
  public:
   TunedTracker(const Study& study, const TrackerSpec& spec) : study_(study), spec_(spec) {
     for (const std::string& path : spec.tune) {
-      sizes_.push_back(numbers_at(spec.configuration, path, spec.name + ".tune").size());
-      for (const double value : numbers_at(spec.configuration, path, spec.name + ".tune"))
+      sizes_.push_back(numbers_at(*spec.configuration, path, spec.name + ".tune").size());
+      for (const double value : numbers_at(*spec.configuration, path, spec.name + ".tune"))
         start_.push_back(std::log(value));
     }
   }
@@ -41,8 +41,8 @@ class TunedTracker {
   }
 
   std::unique_ptr<Tracker> make(const std::vector<double>& logarithms) const {
-    toml::table configuration = spec_.configuration;
-    for (const auto& [path, numbers] : values(logarithms)) put_numbers(configuration, path, numbers);
+    SharedTable configuration = spec_.configuration;
+    for (const auto& [path, numbers] : values(logarithms)) configuration = with_numbers(*configuration, path, numbers);
     TableReader reader(configuration, study_.path().string(), "trackers." + spec_.name);
     return make_tracker(spec_.kind, reader);
   }

@@ -41,11 +41,11 @@ void check(const std::string& path) {
 
 }  // namespace
 
-void add_check(CLI::App& app) {
+void add_check(const Subcommands& all) {
   auto path = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand("check", "say whether a study is valid and what it would run");
-  command->add_option("study", *path, "study file (TOML)")->required();
-  command->callback([path] { check(*path); });
+  const Subcommand command = all.add("check", "say whether a study is valid and what it would run");
+  command.argument("study", *path, "study file (TOML)").required();
+  command.runs([path] { check(*path); });
 }
 
 }  // namespace truebearing

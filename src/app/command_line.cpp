@@ -1,5 +1,6 @@
 #include "app/command_line.hpp"
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
 #include <fmt/format.h>
@@ -14,14 +15,15 @@ int command_line(int argc, const char* const* argv) {
   CLI::App app{"Trackers that learn to correct themselves.", "truebearing"};
   app.set_version_flag("--version", TRUEBEARING_VERSION);
   app.require_subcommand(1);
-  add_simulate(app);
-  add_tune(app);
-  add_train(app);
-  add_track(app);
-  add_compare(app);
-  add_check(app);
-  add_rules(app);
-  add_tma(app);
+  const Subcommands all{app};
+  add_simulate(all);
+  add_tune(all);
+  add_train(all);
+  add_track(all);
+  add_compare(all);
+  add_check(all);
+  add_rules(all);
+  add_tma(all);
   try {
     app.parse(argc, argv);
     if (std::fflush(stdout) != 0) throw InputError("standard output", "cannot be written");

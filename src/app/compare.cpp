@@ -10,20 +10,20 @@
 namespace truebearing {
 namespace {
 
-struct Options {
+struct CompareArguments {
   std::string study;
   std::string json;
   std::string truth;
-  std::uint64_t seed = 0;
+  std::optional<std::uint64_t> seed;
   std::size_t runs = 0;
   int threads = 0;
   bool retrain = false;
   bool quiet = false;
 };
 
-void run_compare(const Options& options, bool seed_given) {
+void run_compare(const CompareArguments& options) {
   Study study = Study::load(options.study);
-  const std::uint64_t seed = seed_given ? options.seed : study.seed();
+  const std::uint64_t seed = options.seed.value_or(study.seed());
   CorrectionModels models;
   if (options.retrain) {
     const WorkflowOptions workflow{seed, options.threads, options.quiet};
@@ -61,23 +61,20 @@ void run_compare(const Options& options, bool seed_given) {
 
 }  // namespace
 
-void add_compare(CLI::App& app) {
-  auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("compare", "run the study's trackers on held-out runs and compare their errors");
-  command->add_option("study", options->study, "study file (TOML)")->required();
-  CLI::Option* seed = command->add_option("--seed", options->seed, "seed; the study's own where not given");
-  command->add_option("--runs", options->runs, "runs; the study's own number where not given")
-      ->check(CLI::Range(1, 10000000));
-  command->add_option("--threads", options->threads, "0: one per core")->check(CLI::Range(0, 1024));
-  command->add_option(
-      "--truth", options->truth,
-      "a recorded track (log with truth, or positions), measured afresh in every run; or a line array's "
-      "log with truth, replayed");
-  command->add_flag("--retrain", options->retrain, "tune and train afresh with this seed; files are left alone");
-  command->add_option("--json", options->json, "write the results as JSON; - is standard output");
-  command->add_flag("--quiet", options->quiet, "no progress");
-  command->callback([options, seed] { run_compare(*options, seed->count() > 0); });
+void add_compare(const Subcommands& all) {
+  auto options = std::make_shared<CompareArguments>();
+  const Subcommand command = all.add("compare", "run the study's trackers on held-out runs and compare their errors");
+  command.argument("study", options->study, "study file (TOML)").required();
+  command.argument("--seed", options->seed, "seed; the study's own where not given");
+  command.argument("--runs", options->runs, "runs; the study's own number where not given").within(1, 10000000);
+  command.argument("--threads", options->threads, "0: one per core").within(0, 1024);
+  command.argument("--truth", options->truth,
+                   "a recorded track (log with truth, or positions), measured afresh in every run; or a line array's "
+                   "log with truth, replayed");
+  command.flag("--retrain", options->retrain, "tune and train afresh with this seed; files are left alone");
+  command.argument("--json", options->json, "write the results as JSON; - is standard output");
+  command.flag("--quiet", options->quiet, "no progress");
+  command.runs([options] { run_compare(*options); });
 }
 
 }  // namespace truebearing

@@ -8,11 +8,11 @@
 
 namespace truebearing {
 
-void add_rules(CLI::App& app) {
+void add_rules(const Subcommands& all) {
   auto path = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand("rules", "print the rules of a model file as sentences");
-  command->add_option("model", *path, "model file (JSON)")->required();
-  command->callback([path] {
+  const Subcommand command = all.add("rules", "print the rules of a model file as sentences");
+  command.argument("model", *path, "model file (JSON)").required();
+  command.runs([path] {
     const CorrectionModel model = read_model_file(*path);
     fmt::print("{} corrects {} towards the truth; trusted: {}\n", *path, model.design.base, model.design.reference);
     for (const auto& [key, value] : model.provenance) fmt::print("  {}: {}\n", key, value);

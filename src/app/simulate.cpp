@@ -16,7 +16,7 @@
 namespace truebearing {
 namespace {
 
-struct Options {
+struct SimulateArguments {
   std::string scenario;
   std::string folder;
   std::string track;
@@ -27,7 +27,7 @@ struct Options {
   bool quiet = false;
 };
 
-std::unique_ptr<Scenario> scenario_of(const Options& options) {
+std::unique_ptr<Scenario> scenario_of(const SimulateArguments& options) {
   std::unique_ptr<Scenario> scenario = load_scenario(options.scenario);
   if (options.track.empty()) return scenario;
   const auto* bearings = dynamic_cast<const BearingsOnlyScenario*>(scenario.get());
@@ -46,7 +46,7 @@ void write_log(std::filesystem::path path, const Recording& recording) {
     write_file_atomically(path, write_recording(recording));
 }
 
-void simulate(const Options& options) {
+void simulate(const SimulateArguments& options) {
   const std::unique_ptr<Scenario> scenario = scenario_of(options);
   std::error_code failure;
   std::filesystem::create_directories(options.folder, failure);
@@ -61,23 +61,21 @@ void simulate(const Options& options) {
 
 }  // namespace
 
-void add_simulate(CLI::App& app) {
-  auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("simulate", "write measurement logs with truth");
-  command->add_option("scenario", options->scenario, "scenario file (TOML)")->required();
-  command
-      ->add_option("-o,--output", options->folder, "folder for run_0000.csv, run_0001.csv, ... (.h5 of a line array)")
-      ->required();
-  command->add_option("--seed", options->seed, "seed of the random streams")->capture_default_str();
-  command->add_option("--runs", options->runs, "number of logs")->capture_default_str()->check(CLI::Range(1, 1000000));
-  CLI::Option* track = command->add_option(
+void add_simulate(const Subcommands& all) {
+  auto options = std::make_shared<SimulateArguments>();
+  const Subcommand command = all.add("simulate", "write measurement logs with truth");
+  command.argument("scenario", options->scenario, "scenario file (TOML)").required();
+  command.argument("-o,--output", options->folder, "folder for run_0000.csv, run_0001.csv, ... (.h5 of a line array)")
+      .required();
+  command.argument("--seed", options->seed, "seed of the random streams").default_shown();
+  command.argument("--runs", options->runs, "number of logs").default_shown().within(1, 1000000);
+  const Argument track = command.argument(
       "--track", options->track,
       "a recorded track (positions, or a log with truth) as the target of a bearings_only or passive_sonar one");
-  command->add_option("--track-id", options->track_id, "which one of the file")->needs(track);
-  command->add_option("--track-from", options->track_from_s, "time in the track, in s, at which it begins")
-      ->needs(track);
-  command->add_flag("--quiet", options->quiet, "no progress");
-  command->callback([options] { simulate(*options); });
+  command.argument("--track-id", options->track_id, "which one of the file").needs(track);
+  command.argument("--track-from", options->track_from_s, "time in the track, in s, at which it begins").needs(track);
+  command.flag("--quiet", options->quiet, "no progress");
+  command.runs([options] { simulate(*options); });
 }
 
 }  // namespace truebearing

@@ -1,18 +1,17 @@
-// The subcommands, each in a file of its own. add_...() declares its options; its callback does the work and throws
-// InputError where the input is at fault.
+// The subcommands, each in a file of its own. add_...() declares its arguments and what it runs.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "app/arguments.hpp"
 
 namespace truebearing {
 
-void add_simulate(CLI::App& app);
-void add_tune(CLI::App& app);
-void add_train(CLI::App& app);
-void add_track(CLI::App& app);
-void add_compare(CLI::App& app);
-void add_check(CLI::App& app);
-void add_rules(CLI::App& app);
-void add_tma(CLI::App& app);
+void add_simulate(const Subcommands& all);
+void add_tune(const Subcommands& all);
+void add_train(const Subcommands& all);
+void add_track(const Subcommands& all);
+void add_compare(const Subcommands& all);
+void add_check(const Subcommands& all);
+void add_rules(const Subcommands& all);
+void add_tma(const Subcommands& all);
 
 }  // namespace truebearing

@@ -18,7 +18,7 @@
 namespace truebearing {
 namespace {
 
-struct Options {
+struct TmaArguments {
   std::string log;
   std::string method = "ml";
   std::string json;
@@ -42,7 +42,7 @@ struct Windows {
   DopplerWindow frequencies;
 };
 
-Recording read_log(const Options& options) {
+Recording read_log(const TmaArguments& options) {
   Recording recording = read_recording(options.log);
   const bool has_frequencies = recording.measured == std::vector<std::string>{"bearing_deg", "frequency_hz"};
   if (!has_frequencies && recording.measured != std::vector<std::string>{"bearing_deg"})
@@ -56,7 +56,7 @@ Recording read_log(const Options& options) {
   return recording;
 }
 
-void add_frequency(const Measurement& measurement, const Options& options, DopplerWindow& window) {
+void add_frequency(const Measurement& measurement, const TmaArguments& options, DopplerWindow& window) {
   if (measurement.sigma.size() == 0 && !(options.frequency_sigma_hz > 0.0))
     throw InputError(options.log, "does not say how good its frequencies are",
                      "a column frequency_sigma_hz, --frequency-sigma, or --bearings-only");
@@ -76,7 +76,7 @@ void check_velocities(const DopplerWindow& window, const std::string& log) {
                      "columns sensor_east_mps, sensor_north_mps, or --bearings-only");
 }
 
-Windows windows_of(const Recording& recording, const Options& options, TmaAnswer& answer) {
+Windows windows_of(const Recording& recording, const TmaArguments& options, TmaAnswer& answer) {
   Windows windows{{}, DopplerWindow(options.sound_mps)};
   const bool has_frequencies = recording.measured.size() == 2 && !options.bearings_only;
   for (std::size_t k = 0; k < recording.measurements.size(); ++k) {
@@ -108,7 +108,7 @@ Windows windows_of(const Recording& recording, const Options& options, TmaAnswer
   return windows;
 }
 
-BatchPrior prior_of(const Options& options, const BearingWindow& window) {
+BatchPrior prior_of(const TmaArguments& options, const BearingWindow& window) {
   BatchPrior prior;
   prior.velocity_information = Eigen::Matrix2d::Identity() / (options.velocity_sigma_mps * options.velocity_sigma_mps);
   if (options.range_sigma_m > 0.0)
@@ -116,7 +116,7 @@ BatchPrior prior_of(const Options& options, const BearingWindow& window) {
   return prior;
 }
 
-FrequencyChangeOptions changes_of(const Options& options) {
+FrequencyChangeOptions changes_of(const TmaArguments& options) {
   using Handling = FrequencyChangeOptions::Handling;
   FrequencyChangeOptions changes;
   if (options.frequency_changes == "segments") changes.handling = Handling::segments;
@@ -162,7 +162,7 @@ void list_levels(const DopplerWindow& window, TmaAnswer::Source& source, const B
   }
 }
 
-void solve(Windows& windows, const Options& options, TmaAnswer& answer) {
+void solve(Windows& windows, const TmaArguments& options, TmaAnswer& answer) {
   const BearingWindow& bearings = windows.bearings;
   if (options.is_cho()) {
     ChoOptions cho;
@@ -199,7 +199,7 @@ void solve(Windows& windows, const Options& options, TmaAnswer& answer) {
   if (!answer.range_is_known()) answer.hypotheses = hypotheses(bearings, used, batch_options);
 }
 
-void tma(const Options& options) {
+void tma(const TmaArguments& options) {
   if ((options.range_m > 0.0) != (options.range_sigma_m > 0.0))
     throw InputError("--range, --range-sigma", "stand one without the other", "both or neither");
   const Recording recording = read_log(options);
@@ -219,56 +219,52 @@ void tma(const Options& options) {
 
 }  // namespace
 
-void add_tma(CLI::App& app) {
-  auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("tma", "range, course and speed of a target from bearings and frequencies");
+void add_tma(const Subcommands& all) {
+  auto options = std::make_shared<TmaArguments>();
+  const Subcommand command = all.add("tma", "range, course and speed of a target from bearings and frequencies");
   command
-      ->add_option("log", options->log,
-                   "measurement log (CSV) with bearing_deg and own ship's position, and with frequency_hz and own "
-                   "ship's velocity where there are frequencies; - is standard input")
-      ->required();
+      .argument("log", options->log,
+                "measurement log (CSV) with bearing_deg and own ship's position, and with frequency_hz and own "
+                "ship's velocity where there are frequencies; - is standard input")
+      .required();
   command
-      ->add_option("--method", options->method,
-                   "ml, map, or for comparison Cho's gauss_newton, levenberg, "
-                   "levenberg_marquardt")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"ml", "map", "gauss_newton", "levenberg", "levenberg_marquardt"}));
+      .argument("--method", options->method,
+                "ml, map, or for comparison Cho's gauss_newton, levenberg, "
+                "levenberg_marquardt")
+      .default_shown()
+      .one_of({"ml", "map", "gauss_newton", "levenberg", "levenberg_marquardt"});
+  command.argument("--sigma", options->sigma_deg, "standard deviation of a bearing in degrees, in place of the log's")
+      .positive();
   command
-      ->add_option("--sigma", options->sigma_deg, "standard deviation of a bearing in degrees, in place of the log's")
-      ->check(CLI::PositiveNumber);
+      .argument("--frequency-sigma", options->frequency_sigma_hz,
+                "standard deviation of a frequency in Hz, in place of the log's")
+      .positive();
+  command.argument("--sound", options->sound_mps, "speed of sound, m/s").default_shown().positive();
   command
-      ->add_option("--frequency-sigma", options->frequency_sigma_hz,
-                   "standard deviation of a frequency in Hz, in place of the log's")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--sound", options->sound_mps, "speed of sound, m/s")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      .argument("--frequency-changes", options->frequency_changes,
+                "where the source changed its tone: levels finds what belongs together; segments takes one "
+                "frequency from jump to jump; switch uses bearings only; ignored believes in one frequency")
+      .default_shown()
+      .one_of({"levels", "segments", "switch", "ignored"});
+  command.flag("--bearings-only", options->bearings_only, "leave the log's frequencies unused");
+  command.argument("--from", options->from_s, "use measurements from this time on, s");
+  command.argument("--to", options->to_s, "use measurements up to this time, s");
   command
-      ->add_option("--frequency-changes", options->frequency_changes,
-                   "where the source changed its tone: levels finds what belongs together; segments takes one "
-                   "frequency from jump to jump; switch uses bearings only; ignored believes in one frequency")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"levels", "segments", "switch", "ignored"}));
-  command->add_flag("--bearings-only", options->bearings_only, "leave the log's frequencies unused");
-  command->add_option("--from", options->from_s, "use measurements from this time on, s");
-  command->add_option("--to", options->to_s, "use measurements up to this time, s");
+      .argument("--huber", options->huber_sigmas,
+                "bearings farther off than so many standard deviations count "
+                "as outliers (of ml and map)")
+      .positive();
   command
-      ->add_option("--huber", options->huber_sigmas,
-                   "bearings farther off than so many standard deviations count "
-                   "as outliers (of ml and map)")
-      ->check(CLI::PositiveNumber);
-  command
-      ->add_option("--velocity-sigma", options->velocity_sigma_mps,
-                   "of map: what is believed of either component "
-                   "of the velocity about zero, m/s")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
-  command->add_option("--range", options->range_m, "of map: what is believed of the range at the first bearing, m")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--range-sigma", options->range_sigma_m, "of map: its standard deviation, m")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--json", options->json, "write the answer as JSON; - is standard output");
-  command->callback([options] { tma(*options); });
+      .argument("--velocity-sigma", options->velocity_sigma_mps,
+                "of map: what is believed of either component "
+                "of the velocity about zero, m/s")
+      .default_shown()
+      .positive();
+  command.argument("--range", options->range_m, "of map: what is believed of the range at the first bearing, m")
+      .positive();
+  command.argument("--range-sigma", options->range_sigma_m, "of map: its standard deviation, m").positive();
+  command.argument("--json", options->json, "write the answer as JSON; - is standard output");
+  command.runs([options] { tma(*options); });
 }
 
 }  // namespace truebearing

@@ -27,7 +27,7 @@
 namespace truebearing {
 namespace {
 
-struct Options {
+struct TrackArguments {
   std::string study;
   std::string log;
   std::string output;
@@ -156,7 +156,7 @@ void add(TrackerCounts& sum, const TrackerCounts& counts) {
   sum.failed += counts.failed;
 }
 
-void track(const Options& options) {
+void track(const TrackArguments& options) {
   const Study study = Study::load(options.study);
   const std::vector<RecordedTrack> tracks = read_log(study, options.log);
   TrackerSet trackers = study.make_tracker_set();
@@ -212,22 +212,20 @@ void track(const Options& options) {
 
 }  // namespace
 
-void add_track(CLI::App& app) {
-  auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("track", "run the study's trackers on a recorded log");
-  command->add_option("study", options->study, "study file (TOML)")->required();
+void add_track(const Subcommands& all) {
+  auto options = std::make_shared<TrackArguments>();
+  const Subcommand command = all.add("track", "run the study's trackers on a recorded log");
+  command.argument("study", options->study, "study file (TOML)").required();
   command
-      ->add_option(
-          "log", options->log,
-          "measurement log (CSV, or HDF5 of a line array), or step log where the study's scenario is of those; "
-          "- is standard input")
-      ->required();
-  command->add_option("-o,--output", options->output, "write the trackers' step records as CSV; - is standard output");
-  command->add_option("--json", options->json,
-                      "write the scores as JSON, where the log has truth; - is standard output");
-  command->add_option("--events", options->events,
-                      "write what the trackers noticed (turns, a source's jumps, ...) as CSV; - is standard output");
-  command->callback([options] { track(*options); });
+      .argument("log", options->log,
+                "measurement log (CSV, or HDF5 of a line array), or step log where the study's scenario is of those; "
+                "- is standard input")
+      .required();
+  command.argument("-o,--output", options->output, "write the trackers' step records as CSV; - is standard output");
+  command.argument("--json", options->json, "write the scores as JSON, where the log has truth; - is standard output");
+  command.argument("--events", options->events,
+                   "write what the trackers noticed (turns, a source's jumps, ...) as CSV; - is standard output");
+  command.runs([options] { track(*options); });
 }
 
 }  // namespace truebearing

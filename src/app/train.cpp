@@ -10,22 +10,22 @@
 namespace truebearing {
 namespace {
 
-struct Options {
+struct TrainArguments {
   std::string study;
   std::string output;
   std::vector<std::string> trackers;
-  std::uint64_t seed = 0;
+  std::optional<std::uint64_t> seed;
   int threads = 0;
   bool quiet = false;
 };
 
-void train(const Options& options, bool seed_given) {
+void train(const TrainArguments& options) {
   Study study = Study::load(options.study);
   for (const std::string& name : options.trackers)
     if (!study.tracker(name).correction)
       throw InputError(options.study, "\"" + name + "\" is not a corrected tracker", "trackers of kind \"corrected\"");
   const CorrectionModels models =
-      train_study(study, options.trackers, {seed_given ? options.seed : study.seed(), options.threads, options.quiet});
+      train_study(study, options.trackers, {options.seed.value_or(study.seed()), options.threads, options.quiet});
   if (models.empty()) throw InputError(options.study, "has no tracker of kind \"corrected\"");
   if (!options.output.empty() && models.size() > 1)
     throw InputError("-o", fmt::format("names one file for {} models", models.size()), "--tracker NAME beside it");
@@ -38,16 +38,16 @@ void train(const Options& options, bool seed_given) {
 
 }  // namespace
 
-void add_train(CLI::App& app) {
-  auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("train", "train the corrections of a study and write their model files");
-  command->add_option("study", options->study, "study file (TOML)")->required();
-  command->add_option("-o,--output", options->output, "model file; the one that the study names where not given");
-  command->add_option("--tracker", options->trackers, "only these corrected trackers");
-  CLI::Option* seed = command->add_option("--seed", options->seed, "seed; the study's own where not given");
-  command->add_option("--threads", options->threads, "0: one per core")->check(CLI::Range(0, 1024));
-  command->add_flag("--quiet", options->quiet, "no progress");
-  command->callback([options, seed] { train(*options, seed->count() > 0); });
+void add_train(const Subcommands& all) {
+  auto options = std::make_shared<TrainArguments>();
+  const Subcommand command = all.add("train", "train the corrections of a study and write their model files");
+  command.argument("study", options->study, "study file (TOML)").required();
+  command.argument("-o,--output", options->output, "model file; the one that the study names where not given");
+  command.argument("--tracker", options->trackers, "only these corrected trackers");
+  command.argument("--seed", options->seed, "seed; the study's own where not given");
+  command.argument("--threads", options->threads, "0: one per core").within(0, 1024);
+  command.flag("--quiet", options->quiet, "no progress");
+  command.runs([options] { train(*options); });
 }
 
 }  // namespace truebearing

@@ -9,19 +9,19 @@
 namespace truebearing {
 namespace {
 
-struct Options {
+struct TuneArguments {
   std::string study;
   std::string output;
-  std::uint64_t seed = 0;
+  std::optional<std::uint64_t> seed;
   int threads = 0;
   bool quiet = false;
 };
 
-void tune(const Options& options, bool seed_given) {
+void tune(const TuneArguments& options) {
   Study study = Study::load(options.study);
   const std::string output = options.output.empty() ? study.parameters_path().string() : options.output;
   const ParametersFile parameters =
-      tune_study(study, {seed_given ? options.seed : study.seed(), options.threads, options.quiet});
+      tune_study(study, {options.seed.value_or(study.seed()), options.threads, options.quiet});
   if (parameters.trackers.empty()) throw InputError(options.study, "has no tracker with a key `tune`");
   if (output.empty()) throw InputError(options.study, "has no key `parameters`", "that key, or -o FILE");
   write_output(output, parameters_text(parameters));
@@ -30,15 +30,15 @@ void tune(const Options& options, bool seed_given) {
 
 }  // namespace
 
-void add_tune(CLI::App& app) {
-  auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("tune", "fit the baselines' parameters (Q, R, P0) to training draws");
-  command->add_option("study", options->study, "study file (TOML)")->required();
-  command->add_option("-o,--output", options->output, "parameters file; the one that the study names where not given");
-  CLI::Option* seed = command->add_option("--seed", options->seed, "seed; the study's own where not given");
-  command->add_option("--threads", options->threads, "0: one per core")->check(CLI::Range(0, 1024));
-  command->add_flag("--quiet", options->quiet, "no progress");
-  command->callback([options, seed] { tune(*options, seed->count() > 0); });
+void add_tune(const Subcommands& all) {
+  auto options = std::make_shared<TuneArguments>();
+  const Subcommand command = all.add("tune", "fit the baselines' parameters (Q, R, P0) to training draws");
+  command.argument("study", options->study, "study file (TOML)").required();
+  command.argument("-o,--output", options->output, "parameters file; the one that the study names where not given");
+  command.argument("--seed", options->seed, "seed; the study's own where not given");
+  command.argument("--threads", options->threads, "0: one per core").within(0, 1024);
+  command.flag("--quiet", options->quiet, "no progress");
+  command.runs([options] { tune(*options); });
 }
 
 }  // namespace truebearing

@@ -8,7 +8,7 @@
 
 #include "tests/support/comparisons.hpp"
 
-namespace truebearing {
+namespace truebearing::array_angles_test {
 namespace {
 
 using testing::expect_better;
@@ -102,4 +102,4 @@ TEST(ArrayAngles, CorrectionsOfAngleAndRateReachTheirBars) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::array_angles_test

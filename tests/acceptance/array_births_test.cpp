@@ -4,7 +4,7 @@
 
 #include "tests/support/comparisons.hpp"
 
-namespace truebearing {
+namespace truebearing::array_births_test {
 namespace {
 
 using testing::load_study;
@@ -24,4 +24,4 @@ TEST(ArrayBirths, FewTargetsAreMissedAndFewTracksFalse) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::array_births_test

@@ -7,7 +7,7 @@
 
 #include "tests/support/comparisons.hpp"
 
-namespace truebearing {
+namespace truebearing::bearings_only_test {
 namespace {
 
 using testing::expect_better;
@@ -82,4 +82,4 @@ TEST(BearingsOnly, CorrectionWithALogPolarCompanionReachesItsBars) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::bearings_only_test

@@ -7,7 +7,7 @@
 #include "tests/support/comparisons.hpp"
 #include "tests/support/real_data.hpp"
 
-namespace truebearing {
+namespace truebearing::manoeuvre_2d_test {
 namespace {
 
 using testing::expect_no_worse;
@@ -106,4 +106,4 @@ TEST(RecordedFlight, BelevingsvluchtIsTrackedBetterThanByTheTunedFilter) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::manoeuvre_2d_test

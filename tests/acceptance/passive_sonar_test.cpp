@@ -8,7 +8,7 @@
 
 #include "tests/support/comparisons.hpp"
 
-namespace truebearing {
+namespace truebearing::passive_sonar_test {
 namespace {
 
 using testing::expect_better;
@@ -107,4 +107,4 @@ TEST(PassiveSonar, CorrectionsOfTheTurnReachTheirBars) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::passive_sonar_test

@@ -10,7 +10,7 @@
 #include "truebearing/recording/recording_csv.hpp"
 #include "truebearing/simulation/recorded_scenario.hpp"
 
-namespace truebearing {
+namespace truebearing::radar_1d_test {
 namespace {
 
 using testing::difference;
@@ -87,4 +87,4 @@ TEST(Radar1d, RealFlightIsTrackedBetterThanByTheTunedFilter) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::radar_1d_test

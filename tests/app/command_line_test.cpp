@@ -13,7 +13,7 @@
 #include "truebearing/recording/snapshot_log.hpp"
 #include "truebearing/tracker/step_log.hpp"
 
-namespace truebearing {
+namespace truebearing::command_line_test {
 namespace {
 
 using nlohmann::json;
@@ -414,4 +414,4 @@ innovation = false
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::command_line_test

@@ -9,7 +9,7 @@
 #include "tests/app/program.hpp"
 #include "truebearing/correction/model_file.hpp"
 
-namespace truebearing {
+namespace truebearing::crash_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -93,4 +93,4 @@ TEST(ProgramCrash, OfTwoWritersOneWinsWhole) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::crash_test

@@ -15,7 +15,7 @@
 #include "truebearing/simulation/scenario.hpp"
 #include "truebearing/tracker/step_log.hpp"
 
-namespace truebearing {
+namespace truebearing::foreign_tracker_test {
 namespace {
 
 using nlohmann::json;
@@ -182,4 +182,4 @@ TEST(ForeignTracker, IsCorrectedFromItsLogsAlone) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::foreign_tracker_test

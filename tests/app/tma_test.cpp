@@ -9,7 +9,7 @@
 #include "tests/support/bearing_runs.hpp"
 #include "truebearing/recording/recording_csv.hpp"
 
-namespace truebearing {
+namespace truebearing::tma_test {
 namespace {
 
 using nlohmann::json;
@@ -194,4 +194,4 @@ TEST(TmaCommand, BadLogsAreOneLineErrors) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::tma_test

@@ -7,7 +7,7 @@
 #include "tests/support/array_scene.hpp"
 #include "truebearing/core/covariance.hpp"
 
-namespace truebearing {
+namespace truebearing::angle_hypotheses_test {
 namespace {
 
 using testing::ArrayScene;
@@ -197,4 +197,4 @@ TEST(AngleHypotheses, ChangeReachesAllOfThem) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::angle_hypotheses_test

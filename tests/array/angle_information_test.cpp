@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-namespace truebearing {
+namespace truebearing::angle_information_test {
 namespace {
 
 constexpr LineArray kArray{15, 0.5};
@@ -114,4 +114,4 @@ TEST(AngleInformation, DeadSensorsAtTheEndsAreAShorterArray) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::angle_information_test

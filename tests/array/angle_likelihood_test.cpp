@@ -10,7 +10,7 @@
 #include "truebearing/core/chi_square.hpp"
 #include "truebearing/core/covariance.hpp"
 
-namespace truebearing {
+namespace truebearing::angle_likelihood_test {
 namespace {
 
 using testing::ArrayScene;
@@ -318,4 +318,4 @@ TEST(AngleLikelihood, SaysWhereTheArithmeticFails) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::angle_likelihood_test

@@ -9,7 +9,7 @@
 #include "truebearing/array/sample_covariance.hpp"
 #include "truebearing/simulation/scenario.hpp"
 
-namespace truebearing {
+namespace truebearing::angular_innovation_test {
 namespace {
 
 using testing::scene_of;
@@ -172,4 +172,4 @@ TEST(AngularInnovation, CoincidentPairGivesFiniteValues) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::angular_innovation_test

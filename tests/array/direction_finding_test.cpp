@@ -9,7 +9,7 @@
 #include "tests/support/statistics.hpp"
 #include "truebearing/array/sample_covariance.hpp"
 
-namespace truebearing {
+namespace truebearing::direction_finding_test {
 namespace {
 
 using testing::ArrayScene;
@@ -123,4 +123,4 @@ TEST(DirectionFinding, SidelobesAreNoPeaks) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::direction_finding_test

@@ -7,7 +7,7 @@
 
 #include "tests/support/array_scene.hpp"
 
-namespace truebearing {
+namespace truebearing::interval_test {
 namespace {
 
 using testing::ArrayScene;
@@ -156,4 +156,4 @@ TEST(Interval, ForgetsWhatItHeldOfBlocksOfOtherSizes) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::interval_test

@@ -9,7 +9,7 @@
 #include "tests/support/array_scene.hpp"
 #include "truebearing/core/covariance.hpp"
 
-namespace truebearing {
+namespace truebearing::joint_angle_filter_test {
 namespace {
 
 using testing::ArrayScene;
@@ -366,4 +366,4 @@ TEST(EquivalentInnovation, OfNoUpdateIsFinite) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::joint_angle_filter_test

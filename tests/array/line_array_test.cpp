@@ -4,7 +4,7 @@
 
 #include "tests/support/array_scene.hpp"
 
-namespace truebearing {
+namespace truebearing::line_array_test {
 namespace {
 
 constexpr LineArray kArrays[] = {{15, 0.5}, {2, 0.5}, {60, 0.31}};
@@ -58,4 +58,4 @@ TEST(LineArray, TargetsOneResolutionApartDoNotDisturbEachOther) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::line_array_test

@@ -11,7 +11,7 @@
 #include "truebearing/core/angle.hpp"
 #include "truebearing/core/random.hpp"
 
-namespace truebearing {
+namespace truebearing::operation_count_test {
 namespace {
 
 /// A double that counts what is done with it. Signs, comparisons and copies are free, a square root is one operation.
@@ -43,13 +43,13 @@ struct Counted {
 };
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::operation_count_test
 
 template <>
-struct Eigen::NumTraits<truebearing::Counted> : Eigen::NumTraits<double> {
-  using Real = truebearing::Counted;
-  using NonInteger = truebearing::Counted;
-  using Nested = truebearing::Counted;
+struct Eigen::NumTraits<truebearing::operation_count_test::Counted> : Eigen::NumTraits<double> {
+  using Real = truebearing::operation_count_test::Counted;
+  using NonInteger = truebearing::operation_count_test::Counted;
+  using Nested = truebearing::operation_count_test::Counted;
   enum {
     IsComplex = 0,
     IsInteger = 0,
@@ -61,7 +61,7 @@ struct Eigen::NumTraits<truebearing::Counted> : Eigen::NumTraits<double> {
   };
 };
 
-namespace truebearing {
+namespace truebearing::operation_count_test {
 namespace {
 
 constexpr int kSensors = 15;
@@ -146,4 +146,4 @@ TEST(OperationCount, ImplementationsKeepToTheFormulas) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::operation_count_test

@@ -7,7 +7,7 @@
 #include "tests/support/array_scene.hpp"
 #include "truebearing/array/sample_covariance.hpp"
 
-namespace truebearing {
+namespace truebearing::orthogonal_iteration_test {
 namespace {
 
 using testing::joined;
@@ -70,4 +70,4 @@ TEST(OrthogonalIteration, KeepsFiniteColumnsWhereAnIntervalHoldsTooLittle) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::orthogonal_iteration_test

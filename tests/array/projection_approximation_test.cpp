@@ -8,7 +8,7 @@
 #include "tests/support/array_scene.hpp"
 #include "truebearing/array/sample_covariance.hpp"
 
-namespace truebearing {
+namespace truebearing::projection_approximation_test {
 namespace {
 
 using testing::ArrayScene;
@@ -125,4 +125,4 @@ TEST(ProjectionApproximation, StaysGoodOverFiveHundredIntervals) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::projection_approximation_test

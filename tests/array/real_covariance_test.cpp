@@ -6,7 +6,7 @@
 #include "truebearing/array/angle_likelihood.hpp"
 #include "truebearing/array/sample_covariance.hpp"
 
-namespace truebearing {
+namespace truebearing::real_covariance_test {
 namespace {
 
 using testing::ArrayScene;
@@ -163,4 +163,4 @@ TEST(RealCovariance, ForgetsWhatItHeldOfArraysOfOtherSizes) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::real_covariance_test

@@ -4,7 +4,7 @@
 
 #include "tests/support/array_scene.hpp"
 
-namespace truebearing {
+namespace truebearing::sample_covariance_test {
 namespace {
 
 using testing::ArrayScene;
@@ -104,4 +104,4 @@ TEST(SourceCount, BearsEigenvaluesThatAreZero) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::sample_covariance_test

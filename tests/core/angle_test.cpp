@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace truebearing {
+namespace truebearing::angle_test {
 namespace {
 
 TEST(Angle, DegreesAndRadiansAreInverse) {
@@ -27,4 +27,4 @@ TEST(Angle, WrapOfNoAngleIsNone) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::angle_test

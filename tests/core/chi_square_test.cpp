@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace truebearing {
+namespace truebearing::chi_square_test {
 namespace {
 
 TEST(ChiSquare, QuantilesMatchTables) {
@@ -26,4 +26,4 @@ TEST(ChiSquare, NormalQuantileIsItsRoot) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::chi_square_test

@@ -9,7 +9,7 @@
 
 #include "truebearing/core/random.hpp"
 
-namespace truebearing {
+namespace truebearing::covariance_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -106,4 +106,4 @@ TEST(Covariance, LogDensityIsTheNormalDensity) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::covariance_test

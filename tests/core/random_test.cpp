@@ -9,7 +9,7 @@
 
 #include "tests/support/statistics.hpp"
 
-namespace truebearing {
+namespace truebearing::random_test {
 namespace {
 
 using testing::counts_are_even;
@@ -107,4 +107,4 @@ TEST(Random, NormalIsNormal) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::random_test

@@ -4,7 +4,7 @@
 
 #include "truebearing/core/error.hpp"
 
-namespace truebearing {
+namespace truebearing::state_space_test {
 namespace {
 
 TEST(StateSpace, FindsComponentsAndQuantitiesByName) {
@@ -39,4 +39,4 @@ TEST(StateSpace, RefusesNoComponentsAndTooMany) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::state_space_test

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace truebearing {
+namespace truebearing::suggestion_test {
 namespace {
 
 const std::vector<std::string> kNames{"position_m", "velocity_mps", "steps"};
@@ -34,4 +34,4 @@ TEST(Suggestion, HostileNameIsCheap) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::suggestion_test

@@ -13,7 +13,7 @@
 #include "truebearing/evaluation/tracker_set.hpp"
 #include "truebearing/tracker/filter_bank.hpp"
 
-namespace truebearing {
+namespace truebearing::correction_allocation_test {
 namespace {
 
 using testing::allocations_of;
@@ -141,4 +141,4 @@ TEST(TrackerSet, StepsAllocateNothing) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::correction_allocation_test

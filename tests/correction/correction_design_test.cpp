@@ -5,7 +5,7 @@
 
 #include "tests/support/correction_models.hpp"
 
-namespace truebearing {
+namespace truebearing::correction_design_test {
 namespace {
 
 CorrectionDesign design() {
@@ -40,4 +40,4 @@ TEST(CorrectionDesign, DifferencesAreNamedByTheirKeys) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::correction_design_test

@@ -4,7 +4,7 @@
 
 #include "tests/support/plane_trackers.hpp"
 
-namespace truebearing {
+namespace truebearing::correction_inputs_test {
 namespace {
 
 using testing::plane_ensemble;
@@ -43,4 +43,4 @@ TEST(CorrectionInputs, TrackWithoutABaseHasNothingToCorrect) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::correction_inputs_test

@@ -12,7 +12,7 @@
 #include "truebearing/core/covariance.hpp"
 #include "truebearing/correction/corrected_tracker.hpp"
 
-namespace truebearing {
+namespace truebearing::correction_test {
 namespace {
 
 using testing::box;
@@ -470,4 +470,4 @@ TEST(Correction, ModelWhosePartsDisagreeIsRefused) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::correction_test

@@ -10,7 +10,7 @@
 #include "truebearing/tracker/filter_tracker_of.hpp"
 #include "truebearing/tracker/position_sensor.hpp"
 
-namespace truebearing {
+namespace truebearing::feature_extractor_test {
 namespace {
 
 using testing::error_message;
@@ -477,4 +477,4 @@ TEST(TrackFrame, NeedsThePlaneAndMeasuredPositions) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::feature_extractor_test

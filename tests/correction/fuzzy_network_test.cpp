@@ -10,7 +10,7 @@
 #include "truebearing/core/error.hpp"
 #include "truebearing/core/random.hpp"
 
-namespace truebearing {
+namespace truebearing::fuzzy_network_test {
 namespace {
 
 constexpr double kExact = 1e-12;
@@ -162,4 +162,4 @@ TEST(FuzzyNetwork, RefusesBadParameters) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::fuzzy_network_test

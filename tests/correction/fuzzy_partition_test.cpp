@@ -7,7 +7,7 @@
 #include "truebearing/core/error.hpp"
 #include "truebearing/core/random.hpp"
 
-namespace truebearing {
+namespace truebearing::fuzzy_partition_test {
 namespace {
 
 constexpr double kExact = 1e-12;
@@ -63,4 +63,4 @@ TEST(FuzzyPartition, RefusesBadPartitions) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::fuzzy_partition_test

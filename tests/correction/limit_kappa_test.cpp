@@ -8,7 +8,7 @@
 
 #include "tests/support/line_trackers.hpp"
 
-namespace truebearing {
+namespace truebearing::limit_kappa_test {
 namespace {
 
 using testing::kInfinity;
@@ -110,4 +110,4 @@ TEST(LimitKappa, NothingPassesTheBound) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::limit_kappa_test

@@ -12,7 +12,7 @@
 #include "tests/support/correction_models.hpp"
 #include "tests/support/error_message.hpp"
 
-namespace truebearing {
+namespace truebearing::model_file_test {
 namespace {
 
 using nlohmann::json;
@@ -280,4 +280,4 @@ TEST(ModelFile, AlteredAnyhowItIsRefusedOrValid) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::model_file_test

@@ -7,7 +7,7 @@
 #include "truebearing/core/error.hpp"
 #include "truebearing/correction/model_file.hpp"
 
-namespace truebearing {
+namespace truebearing::plane_correction_test {
 namespace {
 
 using testing::plane_ensemble;
@@ -96,4 +96,4 @@ TEST(PlaneCorrection, MomentsThatAreNoCovarianceAreRefused) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::plane_correction_test

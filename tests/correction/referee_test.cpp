@@ -4,7 +4,7 @@
 
 #include "truebearing/core/random.hpp"
 
-namespace truebearing {
+namespace truebearing::referee_test {
 namespace {
 
 // A target on a line at 10 m/s, measured every second; what two estimates of it are off by decides.
@@ -60,4 +60,4 @@ TEST(Referee, NumbersThatOverflowLoseTheWeight) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::referee_test

@@ -3,7 +3,7 @@
 
 #include "truebearing/correction/feature_extractor.hpp"
 
-namespace truebearing {
+namespace truebearing::remembered_velocity_test {
 namespace {
 
 constexpr double kAlpha = 0.25;
@@ -99,4 +99,4 @@ TEST(RememberedVelocity, ChangesSignAcrossInAMirror) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::remembered_velocity_test

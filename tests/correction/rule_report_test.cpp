@@ -5,7 +5,7 @@
 
 #include "tests/support/correction_models.hpp"
 
-namespace truebearing {
+namespace truebearing::rule_report_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -60,4 +60,4 @@ TEST(RuleReport, EveryRuleHasOneSentence) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::rule_report_test

@@ -7,7 +7,7 @@
 #include "tests/support/error_message.hpp"
 #include "truebearing/correction/feature_extractor.hpp"
 
-namespace truebearing {
+namespace truebearing::sight_frame_test {
 namespace {
 
 using testing::error_message;
@@ -149,4 +149,4 @@ TEST(SightFrame, HasANameAndRefusesALine) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::sight_frame_test

@@ -11,7 +11,7 @@
 
 #include "tests/support/line_trackers.hpp"
 
-namespace truebearing {
+namespace truebearing::two_stage_bias_test {
 namespace {
 
 using testing::position;
@@ -71,4 +71,4 @@ TEST(CompanionDifference, IsTheTwoStageBiasEstimate) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::two_stage_bias_test

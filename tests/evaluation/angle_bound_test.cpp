@@ -16,7 +16,7 @@
 #include "truebearing/evaluation/report.hpp"
 #include "truebearing/simulation/line_array_scenario.hpp"
 
-namespace truebearing {
+namespace truebearing::angle_bound_test {
 namespace {
 
 using testing::error_message;
@@ -210,4 +210,4 @@ TEST(AngleBound, ComesThroughAComparisonOfSets) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::angle_bound_test

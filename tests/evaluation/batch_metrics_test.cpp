@@ -5,7 +5,7 @@
 #include "tests/support/line_trackers.hpp"
 #include "tests/support/metric_runs.hpp"
 
-namespace truebearing {
+namespace truebearing::batch_metrics_test {
 namespace {
 
 using testing::figures;
@@ -49,4 +49,4 @@ TEST(GlobalMinimumShare, CountsCostsThatAreNoHigherThanTheReferences) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::batch_metrics_test

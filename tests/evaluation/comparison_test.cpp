@@ -11,7 +11,7 @@
 #include "truebearing/evaluation/report.hpp"
 #include "truebearing/tracker/raw_tracker.hpp"
 
-namespace truebearing {
+namespace truebearing::comparison_test {
 namespace {
 
 using nlohmann::json;
@@ -153,4 +153,4 @@ TEST(TrackerSet, UnknownMemberIsRefused) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::comparison_test

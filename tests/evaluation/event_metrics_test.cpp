@@ -11,7 +11,7 @@
 #include "truebearing/evaluation/comparison.hpp"
 #include "truebearing/evaluation/report.hpp"
 
-namespace truebearing {
+namespace truebearing::event_metrics_test {
 namespace {
 
 using testing::find_metric;
@@ -108,4 +108,4 @@ TEST(EventMetrics, ComeThroughAComparison) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::event_metrics_test

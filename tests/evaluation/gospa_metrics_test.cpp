@@ -9,7 +9,7 @@
 #include "tests/support/metric_runs.hpp"
 #include "truebearing/evaluation/report.hpp"
 
-namespace truebearing {
+namespace truebearing::gospa_metrics_test {
 namespace {
 
 using testing::figures;
@@ -66,4 +66,4 @@ TEST(GospaMetrics, ComeThroughAComparison) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::gospa_metrics_test

@@ -11,7 +11,7 @@
 
 #include "truebearing/core/random.hpp"
 
-namespace truebearing {
+namespace truebearing::gospa_test {
 namespace {
 
 using Values = std::vector<double>;
@@ -106,4 +106,4 @@ TEST(Gospa, OrderOfTheListsDoesNotMatter) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::gospa_test

@@ -4,7 +4,7 @@
 
 #include "tests/support/line_trackers.hpp"
 
-namespace truebearing {
+namespace truebearing::innovation_consistency_test {
 namespace {
 
 using testing::position;
@@ -115,4 +115,4 @@ TEST(InnovationConsistency, CoastedStepsDoNotCount) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::innovation_consistency_test

@@ -9,7 +9,7 @@
 #include "truebearing/evaluation/track_metrics.hpp"
 #include "truebearing/study/study.hpp"
 
-namespace truebearing {
+namespace truebearing::metric_registry_test {
 namespace {
 
 using ::testing::AllOf;
@@ -17,7 +17,7 @@ using testing::error_message;
 using ::testing::HasSubstr;
 
 ScoringRule read(const std::string& text, const StateSpace& truth = angle_space()) {
-  const toml::table table = parse_toml(text, "study.toml");
+  const SharedTable table = parse_toml(text, "study.toml");
   TableReader reader(table, "study.toml", "scoring");
   ScoringRule rule;
   read_metrics(reader, truth, rule);
@@ -100,4 +100,4 @@ TEST(MetricRegistry, InAStudy) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::metric_registry_test

@@ -9,7 +9,7 @@
 
 #include "truebearing/core/random.hpp"
 
-namespace truebearing {
+namespace truebearing::monte_carlo_test {
 namespace {
 
 TEST(MonteCarlo, EveryRunIsDoneOnce) {
@@ -73,4 +73,4 @@ TEST(MonteCarlo, ProgressCountsEveryRun) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::monte_carlo_test

@@ -10,7 +10,7 @@
 #include "truebearing/evaluation/metric_registry.hpp"
 #include "truebearing/evaluation/report.hpp"
 
-namespace truebearing {
+namespace truebearing::peak_metrics_test {
 namespace {
 
 using testing::error_message;
@@ -21,7 +21,7 @@ using testing::kNaN;
 const Scorer kScorer(line_space(), line_space());
 
 ScoringRule read(const std::string& text) {
-  const toml::table table = parse_toml(text, "study.toml");
+  const SharedTable table = parse_toml(text, "study.toml");
   TableReader reader(table, "study.toml", "scoring");
   ScoringRule rule;
   read_metrics(reader, line_space(), rule);
@@ -72,4 +72,4 @@ TEST(PeakMetrics, ComeThroughAComparison) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::peak_metrics_test

@@ -11,7 +11,7 @@
 #include "truebearing/evaluation/track_metrics.hpp"
 #include "truebearing/tracker/raw_tracker.hpp"
 
-namespace truebearing {
+namespace truebearing::run_score_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -210,4 +210,4 @@ TEST(ScoreRecording, GospaAssignsRecordsWhateverTheirNumbers) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::run_score_test

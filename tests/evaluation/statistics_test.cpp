@@ -6,7 +6,7 @@
 
 #include "truebearing/core/random.hpp"
 
-namespace truebearing {
+namespace truebearing::statistics_test {
 namespace {
 
 std::vector<SquaredErrors> one_error_each(const std::vector<double>& errors) {
@@ -78,4 +78,4 @@ TEST(Statistics, OfTooFewIsNaN) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::statistics_test

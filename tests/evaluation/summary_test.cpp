@@ -6,7 +6,7 @@
 #include "tests/support/metric_runs.hpp"
 #include "truebearing/core/chi_square.hpp"
 
-namespace truebearing {
+namespace truebearing::summary_test {
 namespace {
 
 using testing::kNaN;
@@ -196,4 +196,4 @@ TEST(PairedDifference, OnlyOfQuantitiesThatBothHave) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::summary_test

@@ -11,7 +11,7 @@
 #include "truebearing/evaluation/time_steps.hpp"
 #include "truebearing/simulation/bearings_only_scenario.hpp"
 
-namespace truebearing {
+namespace truebearing::target_motion_bound_test {
 namespace {
 
 using testing::error_message;
@@ -254,4 +254,4 @@ TEST(TargetMotionBound, WithAPriorFrequenciesAddToIt) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::target_motion_bound_test

@@ -7,7 +7,7 @@
 #include "tests/support/line_trackers.hpp"
 #include "tests/support/metric_runs.hpp"
 
-namespace truebearing {
+namespace truebearing::target_motion_metrics_test {
 namespace {
 
 using testing::figures;
@@ -52,4 +52,4 @@ TEST(TargetMotionMetrics, DivergedBaselinesHaveFiniteFigures) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::target_motion_metrics_test

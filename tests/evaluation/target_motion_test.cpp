@@ -7,7 +7,7 @@
 #include "truebearing/core/angle.hpp"
 #include "truebearing/core/random.hpp"
 
-namespace truebearing {
+namespace truebearing::target_motion_test {
 namespace {
 
 const SensorState kOwnShip{{1000.0, 2000.0}, {3.0, 0.0}};
@@ -58,4 +58,4 @@ TEST(TargetMotion, VarianceIsThatOfSmallErrors) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::target_motion_test

@@ -7,7 +7,7 @@
 #include "tests/support/line_trackers.hpp"
 #include "tests/support/metric_runs.hpp"
 
-namespace truebearing {
+namespace truebearing::time_metrics_test {
 namespace {
 
 using testing::figures;
@@ -86,4 +86,4 @@ TEST(TimeMetrics, PairedDifferencesAreOfErrorNormsOverTheRunsThatBothHave) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::time_metrics_test

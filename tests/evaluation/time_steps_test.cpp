@@ -4,7 +4,7 @@
 
 #include "tests/support/line_trackers.hpp"
 
-namespace truebearing {
+namespace truebearing::time_steps_test {
 namespace {
 
 using testing::kNaN;
@@ -31,4 +31,4 @@ TEST(StepsAt, AreTheLastUntilThen) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::time_steps_test

@@ -11,7 +11,7 @@
 #include "truebearing/evaluation/target_motion_metrics.hpp"
 #include "truebearing/simulation/bearings_only_scenario.hpp"
 
-namespace truebearing {
+namespace truebearing::timed_comparison_test {
 namespace {
 
 using nlohmann::json;
@@ -176,4 +176,4 @@ TEST(TimedComparison, IsTheSameForAnyNumberOfThreadsByteForByte) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::timed_comparison_test

@@ -11,7 +11,7 @@
 #include "tests/support/metric_runs.hpp"
 #include "truebearing/evaluation/report.hpp"
 
-namespace truebearing {
+namespace truebearing::track_metrics_test {
 namespace {
 
 using testing::figures;
@@ -128,4 +128,4 @@ TEST(TrackMetrics, OrdinaryComparisonsAreAsTheyWere) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::track_metrics_test

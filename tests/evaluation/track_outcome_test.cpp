@@ -6,7 +6,7 @@
 
 #include "tests/support/line_trackers.hpp"
 
-namespace truebearing {
+namespace truebearing::track_outcome_test {
 namespace {
 
 using testing::kNaN;
@@ -79,4 +79,4 @@ TEST(TrackOutcome, ATargetIsJudgedWhileItIsThere) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::track_outcome_test

@@ -14,7 +14,7 @@
 #include "truebearing/motion/constant_velocity.hpp"
 #include "truebearing/tma/range_prior.hpp"
 
-namespace truebearing {
+namespace truebearing::bearing_filters_test {
 namespace {
 
 constexpr double kManySteps = 1e-7;
@@ -243,4 +243,4 @@ TEST(LogPolarFilter, TargetAtTheSensorFails) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::bearing_filters_test

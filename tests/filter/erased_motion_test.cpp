@@ -6,7 +6,7 @@
 #include "truebearing/motion/coordinated_turn.hpp"
 #include "truebearing/motion/turning_target.hpp"
 
-namespace truebearing {
+namespace truebearing::erased_motion_test {
 namespace {
 
 using Turn = CoordinatedTurn<DiscreteWhiteNoise>;
@@ -62,4 +62,4 @@ TEST(ErasedMotion, OfNoCovarianceFailsAndLeavesTheEstimate) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::erased_motion_test

@@ -6,7 +6,7 @@
 #include "truebearing/filter/kalman.hpp"
 #include "truebearing/motion/turning_target.hpp"
 
-namespace truebearing {
+namespace truebearing::extended_kalman_test {
 namespace {
 
 constexpr double kAlgebra = 1e-12;
@@ -37,4 +37,4 @@ TYPED_TEST(ExtendedKalmanFilter, PredictsByTheJacobianAtTheEstimateBefore) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::extended_kalman_test

@@ -13,7 +13,7 @@
 #include "truebearing/motion/constant_acceleration.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
 
-namespace truebearing {
+namespace truebearing::interacting_multiple_model_test {
 namespace {
 
 constexpr double kExact = 1e-12;
@@ -210,4 +210,4 @@ TEST(InteractingMultipleModel, FailureLeavesAllAsItWas) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::interacting_multiple_model_test

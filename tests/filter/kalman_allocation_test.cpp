@@ -16,7 +16,7 @@
 #include "truebearing/motion/constant_velocity.hpp"
 #include "truebearing/motion/turning_target.hpp"
 
-namespace truebearing {
+namespace truebearing::kalman_allocation_test {
 namespace {
 
 template <typename Filter>
@@ -92,4 +92,4 @@ TEST(BearingFilterAllocation, StepsAllocateNothing) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::kalman_allocation_test

@@ -9,7 +9,7 @@
 #include "truebearing/measurement/position.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
 
-namespace truebearing {
+namespace truebearing::kalman_consistency_test {
 namespace {
 
 constexpr int kRuns = 400;
@@ -55,4 +55,4 @@ TEST(KalmanFilterConsistency, MistunedFiltersAreCaught) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::kalman_consistency_test

@@ -9,7 +9,7 @@
 #include "truebearing/core/covariance.hpp"
 #include "truebearing/filter/kalman.hpp"
 
-namespace truebearing {
+namespace truebearing::kalman_numerics_test {
 namespace {
 
 using Vector1d = Eigen::Matrix<double, 1, 1>;
@@ -98,4 +98,4 @@ TEST(KalmanFilterNumerics, UnstableMotionKeepsCovarianceSymmetric) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::kalman_numerics_test

@@ -8,7 +8,7 @@
 #include "truebearing/measurement/position.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
 
-namespace truebearing {
+namespace truebearing::kalman_radar_test {
 namespace {
 
 TEST(KalmanFilter, PlainRadarFilterHasThePublishedErrors) {
@@ -34,4 +34,4 @@ TEST(KalmanFilter, PlainRadarFilterHasThePublishedErrors) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::kalman_radar_test

@@ -12,7 +12,7 @@
 #include "truebearing/measurement/range_to_site.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
 
-namespace truebearing {
+namespace truebearing::kalman_test {
 namespace {
 
 constexpr double kAlgebra = 1e-12;
@@ -201,4 +201,4 @@ TYPED_TEST(KalmanFilterForms, FloatFollowsDouble) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::kalman_test

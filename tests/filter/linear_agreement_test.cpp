@@ -11,7 +11,7 @@
 #include "truebearing/measurement/cartesian_position.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
 
-namespace truebearing {
+namespace truebearing::linear_agreement_test {
 namespace {
 
 constexpr double kManySteps = 1e-9;
@@ -70,4 +70,4 @@ TYPED_TEST(LinearAgreement, WithTheRecursionOverIrregularSteps) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::linear_agreement_test

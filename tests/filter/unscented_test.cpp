@@ -16,7 +16,7 @@
 #include "truebearing/motion/constant_velocity.hpp"
 #include "truebearing/motion/turning_target.hpp"
 
-namespace truebearing {
+namespace truebearing::unscented_test {
 namespace {
 
 constexpr double kAlgebra = 1e-12;
@@ -206,4 +206,4 @@ TEST(UnscentedKalmanFilterConsistency, MistunedFiltersAreCaught) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::unscented_test

@@ -9,7 +9,7 @@
 
 #include "tests/support/error_message.hpp"
 
-namespace truebearing {
+namespace truebearing::csv_test {
 namespace {
 
 using ::testing::AllOf;
@@ -151,4 +151,4 @@ TEST(CsvWriter, RowMustHaveTheHeadersLength) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::csv_test

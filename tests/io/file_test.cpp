@@ -13,7 +13,7 @@
 #include "tests/support/error_message.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace truebearing {
+namespace truebearing::file_test {
 namespace {
 
 using ::testing::AllOf;
@@ -154,4 +154,4 @@ TEST(MatchingFiles, NoMatchIsAnError) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::file_test

@@ -10,7 +10,7 @@
 #include "tests/support/error_message.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace truebearing {
+namespace truebearing::hdf5_file_test {
 namespace {
 
 using ::testing::AllOf;
@@ -99,4 +99,4 @@ TEST(Hdf5File, AlteredBytesGiveNumbersOrAnError) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::hdf5_file_test

@@ -8,7 +8,7 @@
 
 #include "tests/support/error_message.hpp"
 
-namespace truebearing {
+namespace truebearing::json_file_test {
 namespace {
 
 using ::testing::AllOf;
@@ -76,4 +76,4 @@ TEST(JsonFile, MissingFileIsAnError) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::json_file_test

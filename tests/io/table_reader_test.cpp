@@ -5,7 +5,7 @@
 
 #include "tests/support/error_message.hpp"
 
-namespace truebearing {
+namespace truebearing::table_reader_test {
 namespace {
 
 using ::testing::AllOf;
@@ -16,7 +16,7 @@ using ::testing::HasSubstr;
 template <typename Read>
 std::string error_of(const std::string& text, const Read& read) {
   return error_message([&] {
-    const toml::table table = parse_toml(text, "study.toml");
+    const SharedTable table = parse_toml(text, "study.toml");
     TableReader reader(table, "study.toml");
     read(reader);
   });
@@ -89,7 +89,7 @@ TEST(TableReader, ArraysHaveTheSizeAskedFor) {
 }
 
 TEST(TableReader, KeysStandInTheOrderOfTheFile) {
-  const toml::table table = parse_toml("z = 1\na = 2\nm = 3\n", "study.toml");
+  const SharedTable table = parse_toml("z = 1\na = 2\nm = 3\n", "study.toml");
   EXPECT_THAT(TableReader(table, "study.toml").keys(), ::testing::ElementsAre("z", "a", "m"));
 }
 
@@ -132,4 +132,4 @@ TEST(Toml, SizeIsLimited) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::table_reader_test

@@ -5,7 +5,7 @@
 #include "tests/support/jacobian.hpp"
 #include "truebearing/core/random.hpp"
 
-namespace truebearing {
+namespace truebearing::bearing_frequency_test {
 namespace {
 
 using State = BearingFrequency<>::State;
@@ -144,4 +144,4 @@ TEST(BearingFrequency, ModifiedGainIsTheJacobianWhereThePredictionIsSeenAtTheMea
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::bearing_frequency_test

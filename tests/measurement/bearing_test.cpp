@@ -5,7 +5,7 @@
 #include "tests/support/jacobian.hpp"
 #include "truebearing/core/random.hpp"
 
-namespace truebearing {
+namespace truebearing::bearing_test {
 namespace {
 
 constexpr double kAlgebra = 1e-12;
@@ -88,4 +88,4 @@ TEST(Bearing, ModifiedGainIsTheJacobianWhereThePredictionIsSeenAtTheMeasurement)
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::bearing_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace truebearing {
+namespace truebearing::cartesian_position_test {
 namespace {
 
 TEST(CartesianPosition, MeasuresThePositionsWithTheirFullCovariance) {
@@ -16,4 +16,4 @@ TEST(CartesianPosition, MeasuresThePositionsWithTheirFullCovariance) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::cartesian_position_test

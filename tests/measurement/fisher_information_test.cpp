@@ -7,7 +7,7 @@
 #include "truebearing/measurement/bearing.hpp"
 #include "truebearing/measurement/position.hpp"
 
-namespace truebearing {
+namespace truebearing::fisher_information_test {
 namespace {
 
 // Two positions a time apart determine position and velocity: the bound is that of two-point differencing.
@@ -33,4 +33,4 @@ TEST(FisherInformation, OfABearingLiesAcrossTheLineOfSight) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::fisher_information_test

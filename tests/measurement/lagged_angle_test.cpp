@@ -6,7 +6,7 @@
 #include "truebearing/filter/kalman.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
 
-namespace truebearing {
+namespace truebearing::lagged_angle_test {
 namespace {
 
 using Vector = LaggedAngle::Vector;
@@ -49,4 +49,4 @@ TEST(LaggedAngle, TakesTheLagOutOfAFilter) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::lagged_angle_test

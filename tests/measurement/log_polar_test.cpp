@@ -6,7 +6,7 @@
 #include "truebearing/core/angle.hpp"
 #include "truebearing/core/random.hpp"
 
-namespace truebearing {
+namespace truebearing::log_polar_test {
 namespace {
 
 constexpr double kAlgebra = 1e-12;
@@ -80,4 +80,4 @@ TEST(LogPolar, HasTheJacobiansOfCentralDifferences) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::log_polar_test

@@ -7,7 +7,7 @@
 #include "truebearing/measurement/position.hpp"
 #include "truebearing/measurement/range_bearing.hpp"
 
-namespace truebearing {
+namespace truebearing::longer_state_test {
 namespace {
 
 static_assert(MeasurementModel<OnState<RangeBearing<>, 5>>);
@@ -31,4 +31,4 @@ TEST(OnLongerState, LeavesAModelOfItsOwnSizeAlone) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::longer_state_test

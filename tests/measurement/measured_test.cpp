@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace truebearing {
+namespace truebearing::measured_test {
 namespace {
 
 TEST(Measured, IsKnownByItsComponents) {
@@ -38,4 +38,4 @@ TEST(Measured, StepLogsOfOtherStatesAreRefusedButTheirMeasurementsAreNotKnownBef
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::measured_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace truebearing {
+namespace truebearing::position_test {
 namespace {
 
 TEST(Position, MeasuresThePositions) {
@@ -21,4 +21,4 @@ TEST(Position, HasOneRowInOneDimension) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::position_test

@@ -6,7 +6,7 @@
 #include "truebearing/measurement/position.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
 
-namespace truebearing {
+namespace truebearing::posterior_information_test {
 namespace {
 
 using Motion = ConstantVelocity<1, ContinuousWhiteNoise>;
@@ -75,4 +75,4 @@ TEST(PosteriorInformation, ParametersJoinAsTheyAreMet) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::posterior_information_test

@@ -5,7 +5,7 @@
 #include "tests/support/jacobian.hpp"
 #include "truebearing/core/random.hpp"
 
-namespace truebearing {
+namespace truebearing::range_bearing_rate_test {
 namespace {
 
 constexpr double kAlgebra = 1e-12;
@@ -52,4 +52,4 @@ TEST(RangeBearingRate, WholeTurnsChangeNothing) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::range_bearing_rate_test

@@ -9,7 +9,7 @@
 #include "truebearing/core/covariance.hpp"
 #include "truebearing/core/random.hpp"
 
-namespace truebearing {
+namespace truebearing::range_bearing_test {
 namespace {
 
 constexpr double kAlgebra = 1e-12;
@@ -125,4 +125,4 @@ TEST(ConvertRangeBearing, PlainConversionIsCaught) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::range_bearing_test

@@ -6,7 +6,7 @@
 
 #include "truebearing/core/random.hpp"
 
-namespace truebearing {
+namespace truebearing::range_to_site_test {
 namespace {
 
 constexpr double kJacobian = 1e-6;
@@ -38,4 +38,4 @@ TEST(RangeToSite, HasNoDirectionAtTheSite) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::range_to_site_test

@@ -4,7 +4,7 @@
 
 #include "tests/motion/linear_motion.hpp"
 
-namespace truebearing {
+namespace truebearing::constant_acceleration_test {
 namespace {
 
 constexpr double kAlgebra = 1e-12;
@@ -41,4 +41,4 @@ TEST(DiscreteAccelerationStep, AddsOneIncrementOverTheStep) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::constant_acceleration_test

@@ -4,7 +4,7 @@
 
 #include "tests/motion/linear_motion.hpp"
 
-namespace truebearing {
+namespace truebearing::constant_jerk_test {
 namespace {
 
 constexpr double kAlgebra = 1e-12;
@@ -32,4 +32,4 @@ TEST(ConstantJerk, AccumulatesOverPartsOfAStep) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::constant_jerk_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace truebearing {
+namespace truebearing::constant_velocity_test {
 namespace {
 
 constexpr double kAlgebra = 1e-12;
@@ -51,4 +51,4 @@ TEST(FixedNoise, IsThePublishedMatrixOverItsPeriodAndInProportionElsewhere) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::constant_velocity_test

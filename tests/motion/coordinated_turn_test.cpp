@@ -8,7 +8,7 @@
 #include "truebearing/core/angle.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
 
-namespace truebearing {
+namespace truebearing::coordinated_turn_test {
 namespace {
 
 constexpr double kAlgebra = 1e-12;
@@ -54,4 +54,4 @@ TEST(CoordinatedTurn, IsConstantVelocityAtRateZeroAndCloseToItNearby) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::coordinated_turn_test

@@ -7,7 +7,7 @@
 #include "tests/motion/linear_motion.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
 
-namespace truebearing {
+namespace truebearing::singer_test {
 namespace {
 
 constexpr double kAlgebra = 1e-12;
@@ -69,4 +69,4 @@ TEST(Singer, TendsToConstantVelocityForFastManoeuvres) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::singer_test

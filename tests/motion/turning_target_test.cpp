@@ -7,7 +7,7 @@
 #include "truebearing/core/random.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
 
-namespace truebearing {
+namespace truebearing::turning_target_test {
 namespace {
 
 constexpr double kAlgebra = 1e-12;
@@ -73,4 +73,4 @@ TEST(TurningTarget, RateWandersInProportionToTime) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::turning_target_test

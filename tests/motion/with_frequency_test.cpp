@@ -5,7 +5,7 @@
 #include "truebearing/motion/constant_acceleration.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
 
-namespace truebearing {
+namespace truebearing::with_frequency_test {
 namespace {
 
 constexpr double kT = 7.0;
@@ -45,4 +45,4 @@ TEST(WithFrequency, AddsNothingInNoTime) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::with_frequency_test

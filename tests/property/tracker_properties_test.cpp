@@ -9,7 +9,7 @@
 #include "truebearing/core/covariance.hpp"
 #include "truebearing/study/tracker_registry.hpp"
 
-namespace truebearing {
+namespace truebearing::tracker_properties_test {
 namespace {
 
 using testing::kNaN;
@@ -35,7 +35,7 @@ class TrackerProperty : public ::testing::TestWithParam<Case> {
     const std::string text = std::string(GetParam().configuration) +
                              "\nmeasurement = { model = \"position\", sigma_m = 100.0 }\nstart = { kind = "
                              "\"two_point\" }\n";
-    const toml::table table = parse_toml(text, "tracker.toml");
+    const SharedTable table = parse_toml(text, "tracker.toml");
     TableReader reader(table, "tracker.toml");
     return make_tracker(GetParam().kind, reader);
   }
@@ -161,4 +161,4 @@ INSTANTIATE_TEST_SUITE_P(Positions, TrackerProperty, ::testing::ValuesIn(kCases)
                          [](const auto& tested) { return std::string(tested.param.name); });
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::tracker_properties_test

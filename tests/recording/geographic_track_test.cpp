@@ -11,7 +11,7 @@
 #include "tests/support/error_message.hpp"
 #include "tests/support/real_data.hpp"
 
-namespace truebearing {
+namespace truebearing::geographic_track_test {
 namespace {
 
 using ::testing::AllOf;
@@ -244,4 +244,4 @@ TEST(GeographicTrack, RecordedVesselsAreToldApart) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::geographic_track_test

@@ -11,7 +11,7 @@
 #include "tests/support/real_data.hpp"
 #include "truebearing/core/angle.hpp"
 
-namespace truebearing {
+namespace truebearing::recording_csv_test {
 namespace {
 
 using ::testing::AllOf;
@@ -247,4 +247,4 @@ TEST(RecordingCsv, ReadsTheRecordedFlight) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::recording_csv_test

@@ -20,7 +20,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "truebearing/core/angle.hpp"
 
-namespace truebearing {
+namespace truebearing::snapshot_log_test {
 namespace {
 
 using ::testing::AllOf;
@@ -403,4 +403,4 @@ TEST_F(SnapshotLogTest, FullDiskLeavesTheOldFile) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::snapshot_log_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace truebearing {
+namespace truebearing::velocity_truth_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -57,4 +57,4 @@ TEST(VelocityTruth, CompletesOnlyTheVelocitiesThatAreNotGiven) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::velocity_truth_test

@@ -8,14 +8,14 @@
 #include "tests/support/error_message.hpp"
 #include "truebearing/core/angle.hpp"
 
-namespace truebearing {
+namespace truebearing::angle_path_test {
 namespace {
 
 using testing::error_message;
 using ::testing::HasSubstr;
 
 AnglePath read(const std::string& text) {
-  const toml::table table = parse_toml(text, "path.toml");
+  const SharedTable table = parse_toml(text, "path.toml");
   TableReader reader(table, "path.toml");
   AnglePath path = read_angle_path(reader);
   reader.finish();
@@ -77,4 +77,4 @@ TEST(AnglePath, RefusesWhatIsNone) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::angle_path_test

@@ -10,7 +10,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "truebearing/core/angle.hpp"
 
-namespace truebearing {
+namespace truebearing::bearings_of_track_test {
 namespace {
 
 using ::testing::AllOf;
@@ -135,4 +135,4 @@ TEST(ReadTargetTrack, TakesALogWithItsTruth) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::bearings_of_track_test

@@ -9,7 +9,7 @@
 #include "tests/support/statistics.hpp"
 #include "truebearing/core/angle.hpp"
 
-namespace truebearing {
+namespace truebearing::bearings_only_scenario_test {
 namespace {
 
 using testing::error_message;
@@ -23,7 +23,7 @@ target = { range_m = 6000.0, bearing_deg = 45.0, course_deg = 290.0, speed_mps =
 )";
 
 std::unique_ptr<Scenario> read(const std::string& text) {
-  const toml::table table = parse_toml(text, "bearings.toml");
+  const SharedTable table = parse_toml(text, "bearings.toml");
   TableReader reader(table, "bearings.toml");
   auto scenario = read_bearings_only_scenario(reader);
   reader.finish();
@@ -140,4 +140,4 @@ TEST(BearingsOnlyScenario, SameKeySameRun) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::bearings_only_scenario_test

@@ -9,7 +9,7 @@
 #include "tests/support/error_message.hpp"
 #include "tests/support/statistics.hpp"
 
-namespace truebearing {
+namespace truebearing::distribution_test {
 namespace {
 
 using ::testing::AllOf;
@@ -21,7 +21,7 @@ using Kind = Distribution::Kind;
 constexpr std::size_t kDraws = 100'000;
 
 Distribution read(const std::string& value, Range range = kAnyNumber) {
-  const toml::table table = parse_toml("a = " + value, "scenario.toml");
+  const SharedTable table = parse_toml("a = " + value, "scenario.toml");
   TableReader reader(table, "scenario.toml");
   const Distribution distribution = read_distribution(reader, "a", range);
   reader.finish();
@@ -108,11 +108,11 @@ TEST(Distribution, WhatIsNoDistributionIsAnError) {
 }
 
 TEST(Distribution, MissingKeyIsNamedOrReplaced) {
-  const toml::table table = parse_toml("b = 1", "scenario.toml");
+  const SharedTable table = parse_toml("b = 1", "scenario.toml");
   TableReader reader(table, "scenario.toml");
   EXPECT_THAT(error_message([&] { read_distribution(reader, "a"); }), HasSubstr("a: is missing"));
   EXPECT_EQ(draws(read_distribution_or(reader, "a", 2.0))[0], 2.0);
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::distribution_test

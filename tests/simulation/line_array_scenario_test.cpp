@@ -12,7 +12,7 @@
 #include "tests/support/error_message.hpp"
 #include "tests/support/statistics.hpp"
 
-namespace truebearing {
+namespace truebearing::line_array_scenario_test {
 namespace {
 
 using testing::error_message;
@@ -35,7 +35,7 @@ largest_deg = 55.0
 )";
 
 std::unique_ptr<Scenario> read(const std::string& text) {
-  const toml::table table = parse_toml(text, "array.toml");
+  const SharedTable table = parse_toml(text, "array.toml");
   return read_scenario(TableReader(table, "array.toml"));
 }
 
@@ -354,4 +354,4 @@ TEST(LineArrayScenario, TheOnesThatComeWithTheToolkitLoadAndRun) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::line_array_scenario_test

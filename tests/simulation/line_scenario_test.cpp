@@ -8,7 +8,7 @@
 #include "tests/support/error_message.hpp"
 #include "tests/support/statistics.hpp"
 
-namespace truebearing {
+namespace truebearing::line_scenario_test {
 namespace {
 
 using ::testing::AllOf;
@@ -39,7 +39,7 @@ std::vector<double> errors(const Recording& recording) {
 
 std::string error_of(const std::string& text) {
   return error_message([&] {
-    const toml::table table = parse_toml(text, "line.toml");
+    const SharedTable table = parse_toml(text, "line.toml");
     TableReader reader(table, "line.toml");
     read_line_scenario(reader);
     reader.finish();
@@ -134,4 +134,4 @@ TEST(LineScenario, KeysAreChecked) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::line_scenario_test

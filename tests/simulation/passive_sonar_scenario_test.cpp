@@ -10,7 +10,7 @@
 #include "truebearing/core/angle.hpp"
 #include "truebearing/simulation/bearings_only_scenario.hpp"
 
-namespace truebearing {
+namespace truebearing::passive_sonar_scenario_test {
 namespace {
 
 using testing::error_message;
@@ -27,7 +27,7 @@ const std::string kSensor = "sensor = { bearing_sigma_deg = 1.0, frequency_sigma
 const std::string kSource = "source = { frequency_hz = 100.0, changes = [{ time_s = 600.0, to_hz = 130.0 }] }\n";
 
 std::unique_ptr<Scenario> read(const std::string& text, const char* kind = "passive_sonar") {
-  const toml::table table = parse_toml("kind = \"" + std::string(kind) + "\"\n" + text, "sonar.toml");
+  const SharedTable table = parse_toml("kind = \"" + std::string(kind) + "\"\n" + text, "sonar.toml");
   return read_scenario(TableReader(table, "sonar.toml"));
 }
 
@@ -280,4 +280,4 @@ TEST(PassiveSonarScenario, WithoutASourceBearingsAloneHaveToTellThePosition) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::passive_sonar_scenario_test

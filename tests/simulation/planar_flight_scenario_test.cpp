@@ -10,7 +10,7 @@
 #include "tests/support/statistics.hpp"
 #include "truebearing/core/angle.hpp"
 
-namespace truebearing {
+namespace truebearing::planar_flight_scenario_test {
 namespace {
 
 using ::testing::AllOf;
@@ -36,7 +36,7 @@ PlanarFlightParameters flight_past_a_site() {
 
 std::string error_of(const std::string& text) {
   return error_message([&] {
-    const toml::table table = parse_toml(text, "flight.toml");
+    const SharedTable table = parse_toml(text, "flight.toml");
     TableReader reader(table, "flight.toml");
     read_planar_flight_scenario(reader);
     reader.finish();
@@ -200,4 +200,4 @@ TEST(PlanarFlightScenario, KeysAreChecked) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::planar_flight_scenario_test

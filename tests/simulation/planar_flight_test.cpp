@@ -9,7 +9,7 @@
 #include "tests/support/statistics.hpp"
 #include "truebearing/core/angle.hpp"
 
-namespace truebearing {
+namespace truebearing::planar_flight_test {
 namespace {
 
 using testing::mean_margin;
@@ -168,4 +168,4 @@ TEST(PlanarFlight, QuietFlightsHaveNoManoeuvre) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::planar_flight_test

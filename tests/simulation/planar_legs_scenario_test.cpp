@@ -9,7 +9,7 @@
 #include "tests/support/statistics.hpp"
 #include "truebearing/core/angle.hpp"
 
-namespace truebearing {
+namespace truebearing::planar_legs_scenario_test {
 namespace {
 
 using testing::error_message;
@@ -21,7 +21,7 @@ target = { position_m = [25000.0, 10000.0], velocity_mps = [-120.0, 0.0] }
 const std::string kSensor = "sensor = { position_sigma_m = 100.0 }\n";
 
 std::unique_ptr<Scenario> read(const std::string& text) {
-  const toml::table table = parse_toml(text, "legs.toml");
+  const SharedTable table = parse_toml(text, "legs.toml");
   TableReader reader(table, "legs.toml");
   auto scenario = read_planar_legs_scenario(reader);
   reader.finish();
@@ -89,4 +89,4 @@ TEST(PlanarLegs, KeysAreChecked) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::planar_legs_scenario_test

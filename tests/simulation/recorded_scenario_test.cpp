@@ -13,7 +13,7 @@
 #include "truebearing/core/angle.hpp"
 #include "truebearing/recording/recording_csv.hpp"
 
-namespace truebearing {
+namespace truebearing::recorded_scenario_test {
 namespace {
 
 using testing::error_message;
@@ -152,4 +152,4 @@ TEST(RecordedScenario, PositionsMustBeThoseOfThePlane) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::recorded_scenario_test

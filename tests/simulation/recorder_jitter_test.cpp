@@ -7,7 +7,7 @@
 
 #include "tests/support/statistics.hpp"
 
-namespace truebearing {
+namespace truebearing::recorder_jitter_test {
 namespace {
 
 using testing::mean_margin;
@@ -76,4 +76,4 @@ TEST(RecorderJitter, KnotsComeAsOftenAsTheyShould) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::recorder_jitter_test

@@ -12,7 +12,7 @@
 #include "tests/support/statistics.hpp"
 #include "truebearing/recording/recording_csv.hpp"
 
-namespace truebearing {
+namespace truebearing::scenario_test {
 namespace {
 
 using ::testing::AllOf;
@@ -31,7 +31,7 @@ std::unique_ptr<Scenario> load(const std::string& name) {
 
 std::string error_of(const std::string& text) {
   return error_message([&] {
-    const toml::table table = parse_toml(text, "scenario.toml");
+    const SharedTable table = parse_toml(text, "scenario.toml");
     read_scenario(TableReader(table, "scenario.toml"));
   });
 }
@@ -104,7 +104,7 @@ TEST(Scenario, ShiftOfSpeedIsToSixHundredEitherWay) {
 
 TEST(Scenario, FlightHasSpeedsAndKinksOfTheStudy) {
   // In the plane, where samples between knots lie on a line exactly.
-  toml::table table = read_toml_file(path_of("radar_1d_flight"));
+  SharedTable table = read_toml_file(path_of("radar_1d_flight"));
   table.insert_or_assign("output", "plane");
   const std::unique_ptr<Scenario> flight = read_scenario(TableReader(table, "radar_1d_flight.toml"));
   std::vector<double> interpolated, speeds_mps;
@@ -151,4 +151,4 @@ TEST(Scenario, MissingFileIsAnError) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::scenario_test

@@ -5,14 +5,14 @@
 
 #include "tests/support/error_message.hpp"
 
-namespace truebearing {
+namespace truebearing::source_test {
 namespace {
 
 using testing::error_message;
 using ::testing::HasSubstr;
 
 SourceParameters read(const std::string& text) {
-  const toml::table table = parse_toml(text, "source.toml");
+  const SharedTable table = parse_toml(text, "source.toml");
   TableReader reader(table, "source.toml");
   SourceParameters source = read_source(reader);
   reader.finish();
@@ -74,4 +74,4 @@ TEST(Source, MisreadOnesAreErrors) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::source_test

@@ -8,7 +8,7 @@
 #include "tests/support/error_message.hpp"
 #include "truebearing/core/angle.hpp"
 
-namespace truebearing {
+namespace truebearing::turn_phases_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -16,7 +16,7 @@ using testing::error_message;
 using ::testing::HasSubstr;
 
 TurnPhases read(const std::string& text) {
-  const toml::table table = parse_toml(text, "phases.toml");
+  const SharedTable table = parse_toml(text, "phases.toml");
   TableReader reader(table, "phases.toml");
   TurnPhases phases = read_turn_phases(reader);
   reader.finish();
@@ -64,4 +64,4 @@ TEST(TurnPhases, IntervalsAscend) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::turn_phases_test

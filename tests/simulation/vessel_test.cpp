@@ -8,14 +8,14 @@
 #include "tests/support/error_message.hpp"
 #include "truebearing/core/angle.hpp"
 
-namespace truebearing {
+namespace truebearing::vessel_test {
 namespace {
 
 using testing::error_message;
 using ::testing::HasSubstr;
 
 VesselParameters read(const std::string& text) {
-  const toml::table table = parse_toml(text, "vessel.toml");
+  const SharedTable table = parse_toml(text, "vessel.toml");
   TableReader reader(table, "vessel.toml");
   VesselParameters vessel = read_vessel(reader);
   reader.finish();
@@ -112,4 +112,4 @@ TEST(Vessel, MisreadTurnsAreErrors) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::vessel_test

@@ -8,7 +8,7 @@
 #include "truebearing/core/angle.hpp"
 #include "truebearing/study/study.hpp"
 
-namespace truebearing {
+namespace truebearing::angle_bound_scoring_test {
 namespace {
 
 using ::testing::AllOf;
@@ -16,7 +16,7 @@ using testing::error_message;
 using ::testing::HasSubstr;
 
 std::optional<AngleBound> bound(const std::string& text, const StateSpace& truth = angle_space()) {
-  const toml::table table = parse_toml(text, "study.toml");
+  const SharedTable table = parse_toml(text, "study.toml");
   TableReader reader(table, "study.toml", "scoring");
   const std::optional<AngleBound> read = read_angle_bound(reader, truth);
   reader.finish();
@@ -70,4 +70,4 @@ TEST(AngleBoundScoring, InAStudy) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::angle_bound_scoring_test

@@ -8,7 +8,7 @@
 #include "tests/support/error_message.hpp"
 #include "truebearing/study/tracker_registry.hpp"
 
-namespace truebearing {
+namespace truebearing::angle_trackers_test {
 namespace {
 
 using testing::array_run;
@@ -24,7 +24,7 @@ const std::string kMotion =
 const std::string kJoint = "targets = 5\nnoise_power = 1.0\nrate_sigma_degps = 2.0\n" + kMotion;
 
 std::unique_ptr<Tracker> make(const std::string& kind, const std::string& text) {
-  const toml::table table = parse_toml(text, "study.toml");
+  const SharedTable table = parse_toml(text, "study.toml");
   TableReader reader(table, "study.toml", "trackers.mine");
   return make_tracker(kind, reader);
 }
@@ -150,4 +150,4 @@ TEST(AngleTrackersOfStudies, RefuseWhatTheyDoNotKnow) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::angle_trackers_test

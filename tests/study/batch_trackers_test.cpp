@@ -6,7 +6,7 @@
 #include "tests/support/error_message.hpp"
 #include "truebearing/study/tracker_registry.hpp"
 
-namespace truebearing {
+namespace truebearing::batch_trackers_test {
 namespace {
 
 using ::testing::AllOf;
@@ -18,7 +18,7 @@ const std::string kFrequencies =
     "measurement = { model = \"bearing_frequency\", bearing_sigma_deg = 1.0, frequency_sigma_hz = 0.02 }\n";
 
 std::unique_ptr<Tracker> make(const std::string& text) {
-  const toml::table table = parse_toml(text, "study.toml");
+  const SharedTable table = parse_toml(text, "study.toml");
   TableReader reader(table, "study.toml", "trackers.mine");
   auto tracker = make_tracker("bearings_batch", reader);
   reader.finish();
@@ -48,4 +48,4 @@ TEST(BatchTrackers, FrequenciesThatCannotBeUsedAreAnError) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::batch_trackers_test

@@ -17,7 +17,7 @@
 #include "truebearing/study/motion_kinds.hpp"
 #include "truebearing/study/tracker_registry.hpp"
 
-namespace truebearing {
+namespace truebearing::combinations_test {
 namespace {
 
 constexpr int kSteps = 50;
@@ -145,7 +145,7 @@ std::string configuration(const Combination& c, const Belief& belief) {
 }
 
 std::unique_ptr<Tracker> tracker_of(const std::string& kind, const std::string& text) {
-  const toml::table table = parse_toml(text, "combination.toml");
+  const SharedTable table = parse_toml(text, "combination.toml");
   TableReader reader(table, "combination.toml");
   return make_tracker(kind, reader);
 }
@@ -157,7 +157,7 @@ std::unique_ptr<Tracker> tracker_of(const Combination& c, const std::string& tex
 }
 
 std::shared_ptr<const AnyMotion> motion_of(const Combination& c) {
-  const toml::table table = parse_toml("motion = " + c.motion.toml, "combination.toml");
+  const SharedTable table = parse_toml("motion = " + c.motion.toml, "combination.toml");
   TableReader reader(table, "combination.toml");
   return read_motion(reader.table("motion"), c.layout());
 }
@@ -323,4 +323,4 @@ TEST(CombinationTable, RefusesWhatMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::combinations_test

@@ -7,7 +7,7 @@
 #include "tests/support/radar_study.hpp"
 #include "truebearing/study/study.hpp"
 
-namespace truebearing {
+namespace truebearing::correction_spec_test {
 namespace {
 
 using testing::error_message;
@@ -30,4 +30,4 @@ TEST(CorrectionSpec, StepsLeftOutOfTrainingAreOfAQuantityOfTheTruth) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::correction_spec_test

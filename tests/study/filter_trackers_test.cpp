@@ -7,7 +7,7 @@
 #include "tests/support/error_message.hpp"
 #include "truebearing/study/tracker_registry.hpp"
 
-namespace truebearing {
+namespace truebearing::filter_trackers_test {
 namespace {
 
 using testing::bearings_run;
@@ -24,7 +24,7 @@ const std::string kMatched =
     "start = { kind = \"range\", guess = true, between_m = [5e3, 10e3], velocity_sigma_mps = 3.0 }\n";
 
 std::unique_ptr<Tracker> make(const std::string& text, const std::string& kind) {
-  const toml::table table = parse_toml(text, "study.toml");
+  const SharedTable table = parse_toml(text, "study.toml");
   TableReader reader(table, "study.toml", "trackers.mine");
   return make_tracker(kind, reader);
 }
@@ -98,4 +98,4 @@ TEST(RangeBankMaker, RefusesWhatMakesNoBank) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::filter_trackers_test

@@ -10,7 +10,7 @@
 #include "tests/support/radar_study.hpp"
 #include "truebearing/study/study.hpp"
 
-namespace truebearing {
+namespace truebearing::measured_check_test {
 namespace {
 
 using testing::error_message;
@@ -93,4 +93,4 @@ TEST(MeasuredCheck, ScenariosSayWhatTheirRunsMeasure) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::measured_check_test

@@ -7,7 +7,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "truebearing/io/table_reader.hpp"
 
-namespace truebearing {
+namespace truebearing::parameters_file_test {
 namespace {
 
 using ::testing::AllOf;
@@ -37,7 +37,7 @@ TEST(ParametersFile, NumbersThatAreNotPositiveAreRefused) {
 }
 
 TEST(NumbersAt, PathLeadsToNumbers) {
-  const toml::table table =
+  const SharedTable table =
       parse_toml("[motion]\nvariance = [5, 0.1]\nsigma = 2\nname = \"x\"\nzero = [1.0, 0.0]\n", "s.toml");
   EXPECT_EQ(numbers_at(table, "motion.variance", "here"), (std::vector<double>{5.0, 0.1}));
   EXPECT_EQ(numbers_at(table, "motion.sigma", "here"), std::vector<double>{2.0});
@@ -48,7 +48,7 @@ TEST(NumbersAt, PathLeadsToNumbers) {
 }
 
 TEST(PutNumbers, KeepsArraysArraysAndNumbersNumbers) {
-  toml::table table = parse_toml("[motion]\nvariance = [5, 0.1]\none = [7]\nsigma = 2\n", "s.toml");
+  SharedTable table = parse_toml("[motion]\nvariance = [5, 0.1]\none = [7]\nsigma = 2\n", "s.toml");
   put_numbers(table, "motion.variance", {1.0, 2.0});
   put_numbers(table, "motion.one", {3.0});
   put_numbers(table, "motion.sigma", {4.0});
@@ -60,4 +60,4 @@ TEST(PutNumbers, KeepsArraysArraysAndNumbersNumbers) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::parameters_file_test

@@ -8,7 +8,7 @@
 #include "tests/support/frequency_runs.hpp"
 #include "truebearing/study/tracker_registry.hpp"
 
-namespace truebearing {
+namespace truebearing::passive_sonar_configuration_test {
 namespace {
 
 using testing::bearings_run;
@@ -33,7 +33,7 @@ transition = { leave_first = 0.01, leave_other = 0.05, period_s = 8.0 }
 )";
 
 std::unique_ptr<Tracker> make(const std::string& text, const std::string& kind) {
-  const toml::table table = parse_toml(text, "study.toml");
+  const SharedTable table = parse_toml(text, "study.toml");
   TableReader reader(table, "study.toml", "trackers.mine");
   return make_tracker(kind, reader);
 }
@@ -132,4 +132,4 @@ TEST(PassiveSonar, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::passive_sonar_configuration_test

@@ -9,14 +9,14 @@
 #include "tests/support/error_message.hpp"
 #include "truebearing/core/angle.hpp"
 
-namespace truebearing {
+namespace truebearing::range_prior_configuration_test {
 namespace {
 
 using testing::error_message;
 using ::testing::HasSubstr;
 
 RangePrior read(const std::string& text) {
-  const toml::table table = parse_toml(text, "study.toml");
+  const SharedTable table = parse_toml(text, "study.toml");
   return read_range_prior(TableReader(table, "study.toml", "trackers.mine.start"));
 }
 
@@ -55,4 +55,4 @@ TEST(RangePriorConfiguration, RefusesWhatDoesNotFitTogether) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::range_prior_configuration_test

@@ -14,7 +14,7 @@
 #include "truebearing/recording/snapshot_log.hpp"
 #include "truebearing/study/study.hpp"
 
-namespace truebearing {
+namespace truebearing::recorded_file_test {
 namespace {
 
 using ::testing::AllOf;
@@ -167,4 +167,4 @@ TEST_F(RecordedFileTest, ExampleOfAForeignTrackerIsValid) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::recorded_file_test

@@ -11,7 +11,7 @@
 #include "training/train_correction.hpp"
 #include "truebearing/correction/model_file.hpp"
 
-namespace truebearing {
+namespace truebearing::study_test {
 namespace {
 
 using ::testing::AllOf;
@@ -322,4 +322,4 @@ TEST(Study, StudiesOfTheProjectAreValid) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::study_test

@@ -9,7 +9,7 @@
 #include "truebearing/evaluation/metric_registry.hpp"
 #include "truebearing/study/study.hpp"
 
-namespace truebearing {
+namespace truebearing::timed_scoring_test {
 namespace {
 
 using ::testing::AllOf;
@@ -23,7 +23,7 @@ struct Read {
 };
 
 Read read(const std::string& text, const StateSpace& truth = plane_space()) {
-  const toml::table table = parse_toml(text, "study.toml");
+  const SharedTable table = parse_toml(text, "study.toml");
   TableReader reader(table, "study.toml", "scoring");
   Read made;
   read_metrics(reader, truth, made.rule);
@@ -104,4 +104,4 @@ TEST(TimedScoring, InAStudy) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::timed_scoring_test

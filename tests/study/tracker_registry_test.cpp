@@ -8,7 +8,7 @@
 #include "tests/support/radar_study.hpp"
 #include "truebearing/study/study.hpp"
 
-namespace truebearing {
+namespace truebearing::tracker_registry_test {
 namespace {
 
 using ::testing::AllOf;
@@ -21,7 +21,7 @@ using testing::TemporaryFolder;
 using testing::write_study;
 
 std::unique_ptr<Tracker> make(const std::string& text, const std::string& kind) {
-  const toml::table table = parse_toml(text, "study.toml");
+  const SharedTable table = parse_toml(text, "study.toml");
   TableReader reader(table, "study.toml", "trackers.mine");
   return make_tracker(kind, reader);
 }
@@ -245,11 +245,11 @@ TEST(RawMaker, RefusesWhatDoesNotFit) {
 TEST(RecordedMaker, ReadsItsFileBesideTheStudy) {
   const TemporaryFolder folder;
   folder.write("logs/steps.csv", "time_s,track,x_position_m,x_velocity_mps,P_1_1,P_1_2,P_2_2\n1,0,10,2,4,1,9\n");
-  const toml::table table = parse_toml("file = \"logs/steps.csv\"", (folder.path() / "s.toml").string());
+  const SharedTable table = parse_toml("file = \"logs/steps.csv\"", (folder.path() / "s.toml").string());
   TableReader reader(table, (folder.path() / "s.toml").string(), "trackers.other");
   EXPECT_EQ(make_tracker("recorded", reader)->step(testing::position(1.0, 0.0))[0].x[0], 10.0);
   EXPECT_THAT(error_message([] { make("file = \"nowhere.csv\"", "recorded"); }), HasSubstr("nowhere.csv"));
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::tracker_registry_test

@@ -7,7 +7,7 @@
 
 #include "truebearing/core/random.hpp"
 
-namespace truebearing {
+namespace truebearing::arctangent_test {
 namespace {
 
 constexpr double kTolerance = 5e-16;
@@ -44,4 +44,4 @@ TEST(Arctangent, OfTheAxesIsExactAndOfNothingIsNoNumber) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::arctangent_test

@@ -5,7 +5,7 @@
 #include "tests/support/bearing_runs.hpp"
 #include "tests/support/jacobian.hpp"
 
-namespace truebearing {
+namespace truebearing::bearing_window_test {
 namespace {
 
 using testing::two_legs;
@@ -69,4 +69,4 @@ TEST(BearingWindow, TargetAtTheSensorIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::bearing_window_test

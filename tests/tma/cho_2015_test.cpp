@@ -4,7 +4,7 @@
 
 #include "tests/support/bearing_runs.hpp"
 
-namespace truebearing {
+namespace truebearing::cho_2015_test {
 namespace {
 
 using testing::data_scenario;
@@ -63,4 +63,4 @@ TEST(Cho2015, StopsAfterTenSteps) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::cho_2015_test

@@ -6,7 +6,7 @@
 #include "tests/support/jacobian.hpp"
 #include "truebearing/tma/levenberg_marquardt.hpp"
 
-namespace truebearing {
+namespace truebearing::doppler_term_test {
 namespace {
 
 using testing::jump;
@@ -143,4 +143,4 @@ TEST_F(DopplerTermTest, TargetAtTheSensorIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::doppler_term_test

@@ -8,7 +8,7 @@
 #include "tests/support/jacobian.hpp"
 #include "truebearing/core/covariance.hpp"
 
-namespace truebearing {
+namespace truebearing::doppler_window_test {
 namespace {
 
 using testing::jump;
@@ -113,4 +113,4 @@ TEST(DopplerWindow, NumbersLevelsInTheirOrderAndDropsThoseThatAreGone) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::doppler_window_test

@@ -11,7 +11,7 @@
 #include "tests/support/statistics.hpp"
 #include "truebearing/core/covariance.hpp"
 
-namespace truebearing {
+namespace truebearing::frequency_changes_test {
 namespace {
 
 using Handling = FrequencyChangeOptions::Handling;
@@ -277,4 +277,4 @@ TEST(FrequencyChanges, WithoutFrequenciesTheBearingsSpeak) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::frequency_changes_test

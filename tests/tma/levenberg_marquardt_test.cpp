@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace truebearing {
+namespace truebearing::levenberg_marquardt_test {
 namespace {
 
 // Rosenbrock 1960 as least squares: residuals 10 (y - x^2) and 1 - x.
@@ -73,4 +73,4 @@ TEST(LevenbergMarquardt, LeavesAloneWhatTheDataSayNothingOf) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::levenberg_marquardt_test

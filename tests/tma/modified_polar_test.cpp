@@ -5,7 +5,7 @@
 #include "tests/support/bearing_runs.hpp"
 #include "tests/support/jacobian.hpp"
 
-namespace truebearing {
+namespace truebearing::modified_polar_test {
 namespace {
 
 using testing::two_legs;
@@ -101,4 +101,4 @@ TEST(ModifiedPolar, StartRegressesBearingsAcrossTheSeam) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::modified_polar_test

@@ -8,7 +8,7 @@
 #include "tests/support/bearing_runs.hpp"
 #include "truebearing/tma/target_motion_batch.hpp"
 
-namespace truebearing {
+namespace truebearing::observability_test {
 namespace {
 
 using testing::two_legs;
@@ -123,4 +123,4 @@ TEST(Observability, NamesTheDirectionThatIsOpen) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::observability_test

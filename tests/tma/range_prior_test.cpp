@@ -7,7 +7,7 @@
 #include "truebearing/core/angle.hpp"
 #include "truebearing/core/covariance.hpp"
 
-namespace truebearing {
+namespace truebearing::range_prior_test {
 namespace {
 
 // Moments by summation over a fine grid.
@@ -75,4 +75,4 @@ TEST(RangePrior, CourseIsRelativeToTheBearing) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::range_prior_test

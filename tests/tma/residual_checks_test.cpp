@@ -8,7 +8,7 @@
 #include "tests/support/bearing_runs.hpp"
 #include "truebearing/tma/target_motion_batch.hpp"
 
-namespace truebearing {
+namespace truebearing::residual_checks_test {
 namespace {
 
 using testing::data_scenario;
@@ -126,4 +126,4 @@ TEST(ResidualChecks, FrequenciesShowAManoeuvreThatBearingsDoNot) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::residual_checks_test

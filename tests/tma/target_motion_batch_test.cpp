@@ -12,7 +12,7 @@
 #include "truebearing/measurement/fisher_information.hpp"
 #include "truebearing/tma/frequency_changes.hpp"
 
-namespace truebearing {
+namespace truebearing::target_motion_batch_test {
 namespace {
 
 using testing::data_scenario;
@@ -241,4 +241,4 @@ TEST(TargetMotionBatch, SecondSolutionOfASourceThatChangedAllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::target_motion_batch_test

@@ -9,7 +9,7 @@
 #include "tests/support/angle_trackers.hpp"
 #include "truebearing/core/covariance.hpp"
 
-namespace truebearing {
+namespace truebearing::angle_trackers_test {
 namespace {
 
 using testing::angle_errors;
@@ -432,4 +432,4 @@ TEST(AngleTrackers, ArrayOfAnotherSizeOnTheWayBreaksNothing) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::angle_trackers_test

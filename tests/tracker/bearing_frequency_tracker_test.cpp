@@ -8,7 +8,7 @@
 #include "truebearing/filter/unscented.hpp"
 #include "truebearing/motion/constant_acceleration.hpp"
 
-namespace truebearing {
+namespace truebearing::bearing_frequency_tracker_test {
 namespace {
 
 using testing::frequency_run;
@@ -178,4 +178,4 @@ TEST(BearingFrequencyTracker, OfSevenStatesBeginsWithoutAcceleration) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::bearing_frequency_tracker_test

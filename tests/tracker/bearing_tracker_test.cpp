@@ -3,7 +3,7 @@
 #include "tests/support/bearing_trackers.hpp"
 #include "truebearing/core/covariance.hpp"
 
-namespace truebearing {
+namespace truebearing::bearing_tracker_test {
 namespace {
 
 using testing::bearing_tracker;
@@ -144,4 +144,4 @@ TEST(BearingTracker, HostileStreamNeverGivesAnInvalidRecord) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::bearing_tracker_test

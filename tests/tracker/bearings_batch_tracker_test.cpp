@@ -8,7 +8,7 @@
 #include "tests/support/bearing_runs.hpp"
 #include "truebearing/core/covariance.hpp"
 
-namespace truebearing {
+namespace truebearing::bearings_batch_tracker_test {
 namespace {
 
 using testing::data_scenario;
@@ -26,7 +26,7 @@ Recording run(const std::string& scenario = "cho_s1") {
 }
 
 Recording turning_target() {
-  const toml::table table = parse_toml(testing::kTurningTarget, "turn.toml");
+  const SharedTable table = parse_toml(testing::kTurningTarget, "turn.toml");
   return read_scenario(TableReader(table, "turn.toml"))->simulate({1, Role::evaluation, 0});
 }
 
@@ -325,4 +325,4 @@ TEST(BearingsBatchTracker, BeforeAFrequencyIsHeardItsSourceIsOpen) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::bearings_batch_tracker_test

@@ -7,7 +7,7 @@
 #include "tests/support/fakes.hpp"
 #include "tests/support/line_trackers.hpp"
 
-namespace truebearing {
+namespace truebearing::ensemble_test {
 namespace {
 
 using testing::error_message;
@@ -92,4 +92,4 @@ TEST(Ensemble, FreshBeginsAnewAndIsIndependent) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::ensemble_test

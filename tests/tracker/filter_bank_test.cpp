@@ -6,7 +6,7 @@
 #include "tests/support/statistics.hpp"
 #include "truebearing/core/covariance.hpp"
 
-namespace truebearing {
+namespace truebearing::filter_bank_test {
 namespace {
 
 using testing::kInfinity;
@@ -171,4 +171,4 @@ TEST(FilterBank, HostileMeasurementsLeaveAValidMixture) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::filter_bank_test

@@ -10,7 +10,7 @@
 #include "truebearing/core/covariance.hpp"
 #include "truebearing/tracker/bearing_sensor.hpp"
 
-namespace truebearing {
+namespace truebearing::filter_tracker_test {
 namespace {
 
 using testing::kInfinity;
@@ -388,4 +388,4 @@ TEST(FilterTracker, ResetAndFreshBeginAnew) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::filter_tracker_test

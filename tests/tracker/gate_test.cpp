@@ -5,7 +5,7 @@
 
 #include "truebearing/tracker/gate.hpp"
 
-namespace truebearing {
+namespace truebearing::gate_test {
 namespace {
 
 TEST(Gate, WithoutThresholdEverythingPasses) {
@@ -40,4 +40,4 @@ TEST(Gate, NisThatIsNoNumberNeverPasses) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::gate_test

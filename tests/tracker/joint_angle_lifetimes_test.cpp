@@ -9,13 +9,13 @@
 #include "truebearing/core/angle.hpp"
 #include "truebearing/simulation/line_array_scenario.hpp"
 
-namespace truebearing {
+namespace truebearing::joint_angle_lifetimes_test {
 namespace {
 
 using Lifetimes = JointAngleOptions::Lifetimes;
 
 Recording simulated(const std::string& targets, std::uint64_t run = 0) {
-  const toml::table table = parse_toml(
+  const SharedTable table = parse_toml(
       "kind = \"line_array\"\nperiod_s = 1.0\nintervals = 60\n[array]\nsensors = 15\nsnapshots = 30\n"
       "[signals]\nsnr_db = 5.0\n" +
           targets,
@@ -102,4 +102,4 @@ TEST(JointAngleTrackerLifetimes, NoiseBeginsNoTrack) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::joint_angle_lifetimes_test

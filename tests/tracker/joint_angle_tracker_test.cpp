@@ -11,7 +11,7 @@
 #include "truebearing/core/chi_square.hpp"
 #include "truebearing/core/covariance.hpp"
 
-namespace truebearing {
+namespace truebearing::joint_angle_tracker_test {
 namespace {
 
 using testing::angle_errors;
@@ -300,4 +300,4 @@ TEST(JointAngleTracker, MissingIntervalsEndNoTrack) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::joint_angle_tracker_test

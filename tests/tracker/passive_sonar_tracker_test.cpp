@@ -9,7 +9,7 @@
 #include "truebearing/filter/kalman.hpp"
 #include "truebearing/tracker/filter_tracker.hpp"
 
-namespace truebearing {
+namespace truebearing::passive_sonar_tracker_test {
 namespace {
 
 using testing::frequency_run;
@@ -167,4 +167,4 @@ TEST(PassiveSonarTracker, BeginsAnewAfterAReset) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::passive_sonar_tracker_test

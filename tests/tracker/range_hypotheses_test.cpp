@@ -7,7 +7,7 @@
 #include "tests/support/bearing_trackers.hpp"
 #include "truebearing/core/covariance.hpp"
 
-namespace truebearing {
+namespace truebearing::range_hypotheses_test {
 namespace {
 
 constexpr double kAlgebra = 1e-9;
@@ -123,4 +123,4 @@ TEST(RangeBank, WaitsForTheFirstBearingAndItsGuess) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::range_hypotheses_test

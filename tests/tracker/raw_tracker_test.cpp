@@ -3,7 +3,7 @@
 #include "tests/support/line_trackers.hpp"
 #include "truebearing/tracker/raw_tracker.hpp"
 
-namespace truebearing {
+namespace truebearing::raw_tracker_test {
 namespace {
 
 using testing::kNaN;
@@ -53,4 +53,4 @@ TEST(RawTracker, PromisesNoBlocks) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::raw_tracker_test

@@ -6,7 +6,7 @@
 
 #include "tests/support/line_trackers.hpp"
 
-namespace truebearing {
+namespace truebearing::recorded_tracker_test {
 namespace {
 
 using testing::kNaN;
@@ -93,4 +93,4 @@ TEST(RecordedTracker, WithoutALogItReplaysWhatMeasurementsCarry) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::recorded_tracker_test

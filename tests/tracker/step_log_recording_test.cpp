@@ -8,7 +8,7 @@
 
 #include "tests/support/error_message.hpp"
 
-namespace truebearing {
+namespace truebearing::step_log_recording_test {
 namespace {
 
 using ::testing::AllOf;
@@ -89,4 +89,4 @@ TEST(StepLogRecording, TruthMustBeOfTheState) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::step_log_recording_test

@@ -8,7 +8,7 @@
 #include "tests/support/error_message.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace truebearing {
+namespace truebearing::step_log_scenario_test {
 namespace {
 
 using ::testing::AllOf;
@@ -109,4 +109,4 @@ TEST(StepLogScenario, KeysAreChecked) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::step_log_scenario_test

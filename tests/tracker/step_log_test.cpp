@@ -8,7 +8,7 @@
 #include "tests/support/error_message.hpp"
 #include "tests/support/line_trackers.hpp"
 
-namespace truebearing {
+namespace truebearing::step_log_test {
 namespace {
 
 using ::testing::AllOf;
@@ -211,4 +211,4 @@ TEST(StepLog, RowsCanBePutInTheOrderOfTheirTimes) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::step_log_test

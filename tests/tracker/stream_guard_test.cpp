@@ -3,7 +3,7 @@
 #include "tests/support/line_trackers.hpp"
 #include "truebearing/tracker/stream_guard.hpp"
 
-namespace truebearing {
+namespace truebearing::stream_guard_test {
 namespace {
 
 using testing::kInfinity;
@@ -46,4 +46,4 @@ TEST(StreamGuard, EarlierTimesAndTimesThatAreNoNumbersAreOutOfOrder) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::stream_guard_test

@@ -8,7 +8,7 @@
 #include "tests/support/angle_trackers.hpp"
 #include "truebearing/core/covariance.hpp"
 
-namespace truebearing {
+namespace truebearing::subspace_angle_tracker_test {
 namespace {
 
 using testing::angle_errors;
@@ -153,4 +153,4 @@ TEST(SubspaceAngleTracker, NeverLeavesTheAnglesThereAre) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::subspace_angle_tracker_test

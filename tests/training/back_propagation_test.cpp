@@ -7,7 +7,7 @@
 #include "training/grid_network.hpp"
 #include "truebearing/core/error.hpp"
 
-namespace truebearing {
+namespace truebearing::back_propagation_test {
 namespace {
 
 constexpr double kDerivative = 1e-6;
@@ -104,4 +104,4 @@ TEST(BackPropagation, RefusesAGridThatIsTooLargeAndBadOptions) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::back_propagation_test

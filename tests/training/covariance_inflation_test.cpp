@@ -6,7 +6,7 @@
 
 #include "truebearing/core/error.hpp"
 
-namespace truebearing {
+namespace truebearing::covariance_inflation_test {
 namespace {
 
 // Three narrow rules at -1, 0 and 1 of one input, apart so far that each row belongs to one of them.
@@ -46,4 +46,4 @@ TEST(CovarianceInflation, RefusesBadInput) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::covariance_inflation_test

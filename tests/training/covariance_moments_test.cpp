@@ -8,7 +8,7 @@
 #include "truebearing/core/error.hpp"
 #include "truebearing/core/random.hpp"
 
-namespace truebearing {
+namespace truebearing::covariance_moments_test {
 namespace {
 
 // Two narrow rules at -1 and 1 of one input, apart so far that each row belongs to one of them; two outputs.
@@ -65,4 +65,4 @@ TEST(CovarianceMoments, RefusesBadInput) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::covariance_moments_test

@@ -5,7 +5,7 @@
 #include "training/fuzzy_training.hpp"
 #include "truebearing/core/error.hpp"
 
-namespace truebearing {
+namespace truebearing::k_means_test {
 namespace {
 
 Eigen::MatrixXd normal_points(Eigen::Index count, std::uint64_t run) {
@@ -54,4 +54,4 @@ TEST(StratifiedRows, OnePerStratumAscending) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::k_means_test

@@ -8,7 +8,7 @@
 #include "truebearing/core/random.hpp"
 #include "truebearing/correction/fuzzy_network.hpp"
 
-namespace truebearing {
+namespace truebearing::projected_cost_test {
 namespace {
 
 constexpr double kExact = 1e-12;
@@ -96,4 +96,4 @@ TEST(NormalEquations, ConsequentsMinimiseTheCostTheyReport) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::projected_cost_test

@@ -10,7 +10,7 @@
 #include "tests/support/error_message.hpp"
 #include "tests/support/line_trackers.hpp"
 
-namespace truebearing {
+namespace truebearing::teacher_test {
 namespace {
 
 using testing::error_message;
@@ -221,4 +221,4 @@ TEST(Teacher, TruthOfAnotherSpaceIsRefused) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::teacher_test

@@ -6,7 +6,7 @@
 #include "truebearing/correction/model_file.hpp"
 #include "truebearing/evaluation/comparison.hpp"
 
-namespace truebearing {
+namespace truebearing::train_correction_test {
 namespace {
 
 using testing::kStudy;
@@ -93,4 +93,4 @@ TEST(TrainCorrection, ByBackPropagationIsTheSameToTheBitToo) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::train_correction_test

@@ -7,7 +7,7 @@
 #include "tests/support/radar_study.hpp"
 #include "tests/support/statistics.hpp"
 
-namespace truebearing {
+namespace truebearing::tune_test {
 namespace {
 
 using testing::error_message;
@@ -132,4 +132,4 @@ TEST(Tune, WhatIsNotTunedIsRefused) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::tune_test

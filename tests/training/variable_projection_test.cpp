@@ -8,7 +8,7 @@
 
 #include "truebearing/core/error.hpp"
 
-namespace truebearing {
+namespace truebearing::variable_projection_test {
 namespace {
 
 Eigen::MatrixXd evaluate(const FuzzyNetwork::Parameters& parameters, const Eigen::MatrixXd& features) {
@@ -206,4 +206,4 @@ TEST(VariableProjection, RefusesBadData) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::variable_projection_test

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <limits>
 
+#include "truebearing/core/constants.hpp"
 #include "truebearing/core/error.hpp"
 #include "truebearing/core/suggestion.hpp"
 
@@ -186,7 +186,6 @@ void FeatureExtractor::remember(Term& term, const StepRecord& record) {
 }
 
 double FeatureExtractor::value(const Term& term, const StepRecord& base, const StepRecord* companion) const {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   constexpr double kLeastSpeed_mps = 1e-3, kLeastTime_s = 1.0, kLeastInterval_s = 1e-3;
   if (term.companion >= 0 && !companion) return kNaN;
   const StepRecord& record = companion ? *companion : base;

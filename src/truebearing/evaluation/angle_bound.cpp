@@ -13,18 +13,18 @@
 namespace truebearing {
 namespace {
 
-constexpr const char* kWhere = "scoring.angle_bound";
+constexpr const char* kAngleBound = "scoring.angle_bound";
 constexpr double kSquareDegree = radians(1.0) * radians(1.0);
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-void check(const Recording& recording) {
+void check_snapshots(const Recording& recording) {
   if (!measures_snapshots(recording.measured))
-    throw InputError(kWhere, "finds no snapshots in the recording", "a line array's");
+    throw InputError(kAngleBound, "finds no snapshots in the recording", "a line array's");
   if (!recording.truth_space || *recording.truth_space != angle_space() || recording.truth.empty())
-    throw InputError(kWhere, "finds no truth of angles in the recording");
+    throw InputError(kAngleBound, "finds no truth of angles in the recording");
   for (const Truth& target : recording.truth)
     if (!target.snr)
-      throw InputError(kWhere, "finds a target in the recording whose signal-to-noise ratio is not told",
+      throw InputError(kAngleBound, "finds a target in the recording whose signal-to-noise ratio is not told",
                        "a simulated line array");
 }
 
@@ -96,7 +96,7 @@ bool is_apart(const Eigen::VectorXd& angles_rad, Eigen::Index target, double apa
 }  // namespace
 
 AngleVariances AngleBound::variances(const Recording& recording, int from_step) const {
-  check(recording);
+  check_snapshots(recording);
   const std::size_t steps = recording.measurements.size(), places = recording.truth.size() * steps;
   AngleVariances variances;
   variances.targets = recording.truth.size();

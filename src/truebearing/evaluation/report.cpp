@@ -112,7 +112,7 @@ Json angle_bound_json(const Comparison& comparison, const AngleBoundSummary& bou
 using Columns = std::vector<QuantitySummary>;
 
 // The quantities of the tracker that has most of them: a raw measurement may lack the velocity.
-const Columns& columns_of(const Comparison& comparison) {
+const Columns& quantities_of(const Comparison& comparison) {
   const auto most =
       std::max_element(comparison.trackers.begin(), comparison.trackers.end(),
                        [](const auto& a, const auto& b) { return a.quantities.size() < b.quantities.size(); });
@@ -121,14 +121,14 @@ const Columns& columns_of(const Comparison& comparison) {
 
 std::vector<std::string> heading(const Comparison& comparison) {
   std::vector<std::string> row{"tracker"};
-  for (const QuantitySummary& quantity : columns_of(comparison)) {
+  for (const QuantitySummary& quantity : quantities_of(comparison)) {
     row.push_back(fmt::format("{} RMSE {}", name_of(quantity.name), unit_of(quantity.name)));
     row.push_back("+-");
     if (comparison.tracker(kPlain)) row.push_back("/plain");
   }
   row.insert(row.end(), {"NEES", "cover95"});
-  if (columns_of(comparison).size() > 1)
-    for (const QuantitySummary& quantity : columns_of(comparison))
+  if (quantities_of(comparison).size() > 1)
+    for (const QuantitySummary& quantity : quantities_of(comparison))
       row.push_back(fmt::format("({})", name_of(quantity.name)));
   row.push_back("gate");
   if (!comparison.ns_per_step.empty()) row.push_back("ns/step");
@@ -138,7 +138,7 @@ std::vector<std::string> heading(const Comparison& comparison) {
 std::vector<std::string> table_row(const Comparison& comparison, const TrackerSummary& summary) {
   const TrackerSummary* plain = comparison.tracker(kPlain);
   std::vector<std::string> row{summary.name};
-  for (const QuantitySummary& column : columns_of(comparison)) {
+  for (const QuantitySummary& column : quantities_of(comparison)) {
     const QuantitySummary* quantity = summary.quantity(column.name);
     row.push_back(quantity ? figure(quantity->rmse) : "-");
     row.push_back(quantity ? figure(quantity->rmse_se) : "-");
@@ -146,8 +146,8 @@ std::vector<std::string> table_row(const Comparison& comparison, const TrackerSu
   }
   row.push_back(fmt::format("{}/{}", figure(summary.nees), summary.dimension));
   row.push_back(figure(summary.coverage95));
-  if (columns_of(comparison).size() > 1)
-    for (const QuantitySummary& column : columns_of(comparison)) {
+  if (quantities_of(comparison).size() > 1)
+    for (const QuantitySummary& column : quantities_of(comparison)) {
       const QuantitySummary* quantity = summary.quantity(column.name);
       row.push_back(quantity ? figure(quantity->coverage95) : "-");
     }
@@ -161,12 +161,12 @@ std::vector<std::string> table_row(const Comparison& comparison, const TrackerSu
 std::string phase_table(const Comparison& comparison) {
   if (comparison.phases.empty()) return {};
   std::vector<std::vector<std::string>> rows(1, {"RMSE by phase"});
-  for (const QuantitySummary& column : columns_of(comparison))
+  for (const QuantitySummary& column : quantities_of(comparison))
     for (const std::string& phase : comparison.phases)
       rows[0].push_back(fmt::format("{} {} {}", phase, name_of(column.name), unit_of(column.name)));
   for (const TrackerSummary& summary : comparison.trackers) {
     rows.push_back({summary.name});
-    for (const QuantitySummary& column : columns_of(comparison)) {
+    for (const QuantitySummary& column : quantities_of(comparison)) {
       const QuantitySummary* quantity = summary.quantity(column.name);
       for (std::size_t i = 0; i < comparison.phases.size(); ++i)
         rows.back().push_back(quantity && i < quantity->phases.size() ? figure(quantity->phases[i].rmse) : "-");

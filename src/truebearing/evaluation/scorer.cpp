@@ -1,19 +1,15 @@
 #include "truebearing/evaluation/scorer.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
+#include "truebearing/core/constants.hpp"
 #include "truebearing/core/covariance.hpp"
 #include "truebearing/core/error.hpp"
 #include "truebearing/evaluation/run_score.hpp"
 
 namespace truebearing {
-namespace {
-
-constexpr double kNotScored = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
+namespace {}  // namespace
 
 Scorer::Scorer(const StateSpace& truth, const StateSpace& estimate) : truth_(&truth) {
   std::vector<int> place_of(truth.components.size(), -1);
@@ -63,9 +59,9 @@ double Scorer::estimated_value(std::size_t quantity, const BoundedVector& estima
 void Scorer::prepare(RunScore& score, std::size_t steps, std::size_t targets) const {
   const std::size_t places = targets * steps;
   score.targets = targets;
-  score.error.assign(quantities_.size(), std::vector<double>(places, kNotScored));
-  score.nees.assign(places, kNotScored);
-  score.quantity_nees.assign(quantities_.size(), std::vector<double>(places, kNotScored));
+  score.error.assign(quantities_.size(), std::vector<double>(places, kNaN));
+  score.nees.assign(places, kNaN);
+  score.quantity_nees.assign(quantities_.size(), std::vector<double>(places, kNaN));
 }
 
 void Scorer::score_step(const BoundedVector& truth, const StepRecord& record, std::size_t place,

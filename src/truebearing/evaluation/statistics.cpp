@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
+
+#include "truebearing/core/constants.hpp"
 
 namespace truebearing {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 double jackknife_se(const std::vector<double>& left_out) {
   const double n = static_cast<double>(left_out.size());

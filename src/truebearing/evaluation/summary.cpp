@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <span>
 
 #include "truebearing/core/chi_square.hpp"
+#include "truebearing/core/constants.hpp"
 
 namespace truebearing {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<QuantitySummary::Phase> summarise_phases(std::size_t q, const std::vector<const RunScore*>& scores) {
   const int count = phase_count(scores);

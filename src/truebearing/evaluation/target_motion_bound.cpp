@@ -12,23 +12,23 @@
 namespace truebearing {
 namespace {
 
-constexpr const char* kWhere = "scoring.bound";
+constexpr const char* kBound = "scoring.bound";
 
-constexpr Eigen::Index kFrequency = 4;  // its place in a true state that has one
+constexpr Eigen::Index kFrequencyRow = 4;  // its place in a true state that has one
 
 bool uses_frequencies(const TargetMotionBound& bound, const Recording& recording) {
   return bound.frequencies && measures_bearing_and_frequency(recording.measured);
 }
 
-void check(const TargetMotionBound& bound, const Recording& recording) {
+void check_measured(const TargetMotionBound& bound, const Recording& recording) {
   if (recording.measured != std::vector<std::string>{"bearing_deg"} &&
       !measures_bearing_and_frequency(recording.measured))
-    throw InputError(kWhere, fmt::format("cannot be made for {}", fmt::join(recording.measured, ", ")),
+    throw InputError(kBound, fmt::format("cannot be made for {}", fmt::join(recording.measured, ", ")),
                      "bearing_deg, or bearing_deg and frequency_hz");
   if (!recording.truth_space || !begins_in_plane(*recording.truth_space) || recording.truth.size() != 1)
-    throw InputError(kWhere, "needs the truth of one target in the plane");
+    throw InputError(kBound, "needs the truth of one target in the plane");
   if (uses_frequencies(bound, recording) && recording.truth_space != &plane_frequency_space())
-    throw InputError(kWhere, "needs the true frequency of the source", "truth_frequency_hz, or frequencies = false");
+    throw InputError(kBound, "needs the true frequency of the source", "truth_frequency_hz, or frequencies = false");
 }
 
 // How many steps the truth keeps its first velocity, as far as it is known.
@@ -48,7 +48,7 @@ std::size_t steady_steps(const std::vector<BoundedVector>& truth) {
 double sigma_of(const Measurement& measurement, Eigen::Index component, const std::optional<double>& fallback,
                 const char* key) {
   if (measurement.sigma.size() > 0) return measurement.sigma[component];
-  if (!fallback) throw InputError(kWhere, "measurements carry no standard deviation", std::string("a key ") + key);
+  if (!fallback) throw InputError(kBound, "measurements carry no standard deviation", std::string("a key ") + key);
   return *fallback;
 }
 
@@ -78,7 +78,7 @@ Eigen::Matrix4d prior_covariance(const RangePrior& prior, const Measurement& mea
   if (!measurement.guess) guess.range_sigma_m = prior.range_sigma_m;
   if (!std::isfinite(guess.speed_sigma_mps)) guess.speed_sigma_mps = speed_sigma_mps;
   const Eigen::Matrix4d P = prior.state(model.h(truth)(0), model.sigma_rad, *measurement.sensor, guess).P;
-  if (!P.allFinite()) throw InputError(kWhere + std::string(".prior"), "has no range or speed where no guess comes in");
+  if (!P.allFinite()) throw InputError(kBound + std::string(".prior"), "has no range or speed where no guess comes in");
   return P;
 }
 
@@ -86,7 +86,7 @@ Eigen::Matrix4d prior_covariance(const RangePrior& prior, const Measurement& mea
 
 std::vector<TargetMotionVariance> TargetMotionBound::variances(const Recording& recording,
                                                                const std::vector<int>& steps) const {
-  check(*this, recording);
+  check_measured(*this, recording);
   const ConstantVelocity<2, ContinuousWhiteNoise> motion{{q_m2ps3}};
   const bool with_frequencies = uses_frequencies(*this, recording);
   const std::vector<BoundedVector>& truth = recording.truth.front().x;
@@ -99,7 +99,7 @@ std::vector<TargetMotionVariance> TargetMotionBound::variances(const Recording& 
   for (std::size_t k = 0; k < end; ++k) {
     const Measurement& measurement = recording.measurements[k];
     const Eigen::Vector4d x = truth[k].head<4>();
-    const double frequency_hz = with_frequencies ? truth[k][kFrequency] : 0.0;
+    const double frequency_hz = with_frequencies ? truth[k][kFrequencyRow] : 0.0;
     if (begun && measurement.time_s > time_s) {
       const double dt_s = measurement.time_s - time_s;
       const Eigen::Index n = information.J().rows();
@@ -114,7 +114,7 @@ std::vector<TargetMotionVariance> TargetMotionBound::variances(const Recording& 
     const bool heard = known && with_frequencies && std::isfinite(measurement.z[1]) && std::isfinite(frequency_hz);
     // With a prior all begins with the bearing that it is about.
     if (seen || (heard && (begun || !prior))) {
-      if (!measurement.sensor) throw InputError(kWhere, "needs own ship's position with every bearing");
+      if (!measurement.sensor) throw InputError(kBound, "needs own ship's position with every bearing");
       const SensorState& own_ship = *measurement.sensor;
       BearingFrequency<> model{own_ship.position_m, own_ship.velocity_mps, 1.0, 1.0, sound_mps, seen, heard};
       if (seen) model.sigma_rad = sigma_of(measurement, 0, bearing_sigma_rad, "bearing_sigma_deg");
@@ -130,8 +130,8 @@ std::vector<TargetMotionVariance> TargetMotionBound::variances(const Recording& 
       }
       Eigen::Matrix<double, 5, Eigen::Dynamic> Phi(5, information.J().cols());
       Phi.setIdentity();
-      Phi.row(kFrequency).setZero();
-      if (heard) Phi(kFrequency, 4 + levels.find(frequency_hz)) = 1.0;
+      Phi.row(kFrequencyRow).setZero();
+      if (heard) Phi(kFrequencyRow, 4 + levels.find(frequency_hz)) = 1.0;
       Eigen::Matrix<double, 5, 1> state;
       state << x, frequency_hz;
       information.update(model, state, Phi);

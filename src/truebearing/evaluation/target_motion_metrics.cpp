@@ -11,7 +11,7 @@
 namespace truebearing {
 namespace {
 
-void check(const Recording& recording) {
+void check_truth(const Recording& recording) {
   const auto has_sensor = [](const Measurement& measurement) { return measurement.sensor.has_value(); };
   if (!recording.truth_space || !begins_in_plane(*recording.truth_space) ||
       std::none_of(recording.measurements.begin(), recording.measurements.end(), has_sensor))
@@ -43,7 +43,7 @@ class TargetMotionRun final : public TargetMotionFigures {
 class TargetMotionMetrics final : public MetricFamily {
  public:
   std::unique_ptr<RunFigures> begin(const RunStart& run) const override {
-    check(run.recording);
+    check_truth(run.recording);
     return std::make_unique<TargetMotionRun>(run);
   }
 

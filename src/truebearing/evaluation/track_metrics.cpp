@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <limits>
 #include <optional>
 
+#include "truebearing/core/constants.hpp"
 #include "truebearing/evaluation/metric_registry.hpp"
 #include "truebearing/evaluation/statistics.hpp"
 #include "truebearing/evaluation/summary.hpp"
@@ -13,14 +13,12 @@
 namespace truebearing {
 namespace {
 
-constexpr double kNotScored = std::numeric_limits<double>::quiet_NaN();
-
 class TrackRun final : public TrackFigures {
  public:
   TrackRun(const TrackRule& rule, const RunStart& run, std::size_t quantity)
       : rule_(rule), scorer_(run.scorer), recording_(run.recording), quantity_(quantity) {
     phases = run.recording.phases;
-    truth_.assign(run.recording.truth.size() * run.recording.measurements.size(), kNotScored);
+    truth_.assign(run.recording.truth.size() * run.recording.measurements.size(), kNaN);
     estimates_ = truth_;
   }
 

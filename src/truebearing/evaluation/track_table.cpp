@@ -31,7 +31,7 @@ std::vector<Metric> columns_of(const Comparison& comparison) {
   return columns;
 }
 
-std::string title(const Metric& metric) {
+std::string track_title(const Metric& metric) {
   std::string words = metric.name;
   std::replace(words.begin(), words.end(), '_', ' ');
   const bool plain = is_count(metric) || metric.unit == "share" || metric.unit == "1";
@@ -49,7 +49,7 @@ std::string tracker_rows(const Comparison& comparison) {
   if (columns.empty()) return {};
   Rows rows{{"tracks"}};
   for (const Metric& column : columns) {
-    rows[0].push_back(title(column));
+    rows[0].push_back(track_title(column));
     if (!is_count(column)) rows[0].push_back("+-");
   }
   for (const TrackerSummary& summary : comparison.trackers) {
@@ -75,7 +75,7 @@ std::string bound_rows(const Comparison& comparison) {
     for (const AngleBoundSummary::Quantity& quantity : bound.quantities)
       if (!find(columns, quantity.mse.name)) columns.push_back(quantity.mse);
   Rows rows{{"bounds"}};
-  for (const Metric& column : columns) rows[0].insert(rows[0].end(), {title(column), "+-"});
+  for (const Metric& column : columns) rows[0].insert(rows[0].end(), {track_title(column), "+-"});
   for (const AngleBoundSummary& bound : comparison.angle_bounds) {
     rows.push_back({bound.name});
     std::vector<Metric> metrics;

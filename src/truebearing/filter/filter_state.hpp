@@ -2,11 +2,11 @@
 // for a filter of N states and measurements of M components, whatever the models.
 #pragma once
 
-#include <limits>
 #include <memory>
 #include <type_traits>
 #include <utility>
 
+#include "truebearing/core/constants.hpp"
 #include "truebearing/filter/any_measurement.hpp"
 #include "truebearing/filter/erased_motion.hpp"
 #include "truebearing/filter/tracked_state.hpp"
@@ -42,7 +42,6 @@ Update<Filter::kStates, M> update_by(Filter& filter, const SizedMeasurement<M>& 
     if constexpr (M == 1)  // a filter of bearings alone, which asks for more than h and H
       if (const auto* bearing = dynamic_cast<const ErasedMeasurement<Bearing<>>*>(&measurement))
         return filter.update(bearing->model(), measurement.z);
-    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
     return {Eigen::Matrix<double, M, 1>::Constant(kNaN), Eigen::Matrix<double, M, M>::Constant(kNaN),
             Eigen::Matrix<double, N, M>::Constant(kNaN), kNaN, StepStatus::failed};
   }

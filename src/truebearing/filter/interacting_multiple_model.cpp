@@ -2,18 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
 
+#include "truebearing/core/constants.hpp"
 #include "truebearing/core/covariance.hpp"
 #include "truebearing/core/with_count.hpp"
 
 namespace truebearing {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // The estimates of all modes in the space of one mode's N states: what another lacks is taken from that mode's own.
 template <int N>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <toml++/toml.h>
 #include <utility>
 
 #include "truebearing/core/suggestion.hpp"
@@ -110,7 +111,7 @@ bool contains(Range range, double value) {
 
 }  // namespace
 
-toml::table parse_toml(std::string_view text, const std::string& name) {
+SharedTable parse_toml(std::string_view text, const std::string& name) {
   if (text.size() > kMaxTomlBytes)
     throw InputError(name, fmt::format("is {} bytes long", text.size()),
                      fmt::format("at most {} bytes", kMaxTomlBytes));
@@ -119,18 +120,18 @@ toml::table parse_toml(std::string_view text, const std::string& name) {
   try {
     toml::table table = toml::parse(text, name);
     if (depth_of(table) > kMaxDepth + 1) throw too_deep;
-    return table;
+    return std::make_shared<const toml::table>(std::move(table));
   } catch (const toml::parse_error& error) {
     throw InputError(fmt::format("{}:{}", name, error.source().begin.line), std::string(error.description()), "TOML");
   }
 }
 
-toml::table read_toml_file(const std::filesystem::path& path) {
+SharedTable read_toml_file(const std::filesystem::path& path) {
   return parse_toml(read_text_file(path, kMaxTomlBytes), path.string());
 }
 
-TableReader::TableReader(const toml::table& table, std::string file, std::string path)
-    : table_(&table), file_(std::move(file)), path_(std::move(path)) {}
+TableReader::TableReader(SharedTable table, std::string file, std::string path)
+    : table_(std::move(table)), file_(std::move(file)), path_(std::move(path)) {}
 
 std::string TableReader::where(const std::string& key) const {
   const toml::node* node = table_->get(key);
@@ -247,11 +248,15 @@ std::vector<std::string> TableReader::texts(const std::string& key) {
   return values;
 }
 
+TableReader TableReader::inside(const toml::table& table, std::string path) const {
+  return {SharedTable(table_, &table), file_, std::move(path)};
+}
+
 TableReader TableReader::table(const std::string& key) {
   const toml::node& found = required(key);
   const auto* sub = found.as_table();
   if (!sub) throw error(key, "is " + type_name(found), "a table");
-  return {*sub, file_, path_.empty() ? key : path_ + "." + key};
+  return inside(*sub, path_.empty() ? key : path_ + "." + key);
 }
 
 std::optional<TableReader> TableReader::table_if_present(const std::string& key) {
@@ -268,7 +273,7 @@ std::vector<TableReader> TableReader::tables(const std::string& key) {
   for (const toml::node& element : *array) {
     const auto* sub = element.as_table();
     if (!sub) throw error(key, "holds " + type_name(element), "an array of tables");
-    readers.emplace_back(*sub, file_, fmt::format("{}{}{}[{}]", path_, path_.empty() ? "" : ".", key, index++));
+    readers.push_back(inside(*sub, fmt::format("{}{}{}[{}]", path_, path_.empty() ? "" : ".", key, index++)));
   }
   return readers;
 }

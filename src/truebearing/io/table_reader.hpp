@@ -6,10 +6,10 @@
 #include <optional>
 #include <set>
 #include <string>
-#include <toml++/toml.h>
 #include <vector>
 
 #include "truebearing/core/error.hpp"
+#include "truebearing/io/toml_forward.hpp"
 
 namespace truebearing {
 
@@ -24,15 +24,14 @@ inline constexpr Range kPositive{0.0, 1e300, true};
 inline constexpr Range kNonNegative{0.0, 1e300};
 
 /// Reads a TOML file of at most 1 MiB and nesting depth 64. Throws InputError with file and line.
-toml::table read_toml_file(const std::filesystem::path& path);
+SharedTable read_toml_file(const std::filesystem::path& path);
 /// The same for text; `name` stands for the file in messages.
-toml::table parse_toml(std::string_view text, const std::string& name);
+SharedTable parse_toml(std::string_view text, const std::string& name);
 
 class TableReader {
  public:
-  /// `file` and `path` are what messages call the table: "study.toml", "trackers.plain". The table must outlive the
-  /// reader.
-  TableReader(const toml::table& table, std::string file, std::string path = {});
+  /// `file` and `path` are what messages call the table: "study.toml", "trackers.plain".
+  TableReader(SharedTable table, std::string file, std::string path = {});
 
   bool has(const std::string& key);
 
@@ -66,7 +65,7 @@ class TableReader {
   /// An error about this table or one of its keys, to throw.
   InputError error(const std::string& key, const std::string& found, const std::string& valid = {}) const;
 
-  const toml::table& raw() const { return *table_; }
+  const SharedTable& raw() const { return table_; }
   const std::string& file() const { return file_; }
   const std::string& path() const { return path_; }
   /// Paths in a file are relative to the folder of that file.
@@ -74,9 +73,10 @@ class TableReader {
 
  private:
   const toml::node& required(const std::string& key);
+  TableReader inside(const toml::table& table, std::string path) const;
   std::string where(const std::string& key) const;
 
-  const toml::table* table_;
+  SharedTable table_;
   std::string file_;
   std::string path_;
   std::set<std::string> asked_;

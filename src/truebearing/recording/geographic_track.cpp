@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "truebearing/core/angle.hpp"
+#include "truebearing/core/constants.hpp"
 #include "truebearing/core/error.hpp"
 #include "truebearing/io/csv.hpp"
 #include "truebearing/recording/velocity_truth.hpp"
@@ -18,7 +19,6 @@
 namespace truebearing {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::array<const char*, 3> kTargetColumns{"vessel", "flight", "track"};
 
 struct Fix {
@@ -41,31 +41,31 @@ struct Target {
   int glitches = 0;
 };
 
-struct Layout {
+struct FixColumns {
   std::size_t time, latitude, longitude;
   int target = -1;
   int speed = -1, course = -1;
 };
 
-Layout read_layout(const CsvReader& csv) {
-  Layout layout{csv.required_column("time_s"), csv.required_column("latitude_deg"),
-                csv.required_column("longitude_deg")};
+FixColumns find_columns(const CsvReader& csv) {
+  FixColumns columns{csv.required_column("time_s"), csv.required_column("latitude_deg"),
+                     csv.required_column("longitude_deg")};
   for (const char* name : kTargetColumns) {
     const int column = csv.column(name);
     if (column < 0) continue;
-    if (layout.target >= 0)
+    if (columns.target >= 0)
       throw InputError(
           csv.name(),
-          fmt::format("has the columns {} and {}", csv.header()[static_cast<std::size_t>(layout.target)], name),
+          fmt::format("has the columns {} and {}", csv.header()[static_cast<std::size_t>(columns.target)], name),
           "one column that separates targets");
-    layout.target = column;
+    columns.target = column;
   }
   for (const auto& [speed, course] : {std::pair("groundspeed_kn", "track_deg"), std::pair("speed_kn", "course_deg")})
     if (csv.column(speed) >= 0 && csv.column(course) >= 0) {
-      layout.speed = csv.column(speed);
-      layout.course = csv.column(course);
+      columns.speed = csv.column(speed);
+      columns.course = csv.column(course);
     }
-  return layout;
+  return columns;
 }
 
 double read_angle(const CsvReader& csv, std::size_t column, double low, double high) {
@@ -75,23 +75,23 @@ double read_angle(const CsvReader& csv, std::size_t column, double low, double h
   return angle_deg;
 }
 
-Fix read_fix(const CsvReader& csv, const Layout& layout) {
-  Fix fix{csv.number(layout.time), read_angle(csv, layout.latitude, -90.0, 90.0),
-          read_angle(csv, layout.longitude, -180.0, 360.0)};
-  if (std::isnan(fix.time_s)) throw csv.error(layout.time, "is missing or infinite", "a finite time");
-  if (layout.speed >= 0) {
+Fix read_fix(const CsvReader& csv, const FixColumns& columns) {
+  Fix fix{csv.number(columns.time), read_angle(csv, columns.latitude, -90.0, 90.0),
+          read_angle(csv, columns.longitude, -180.0, 360.0)};
+  if (std::isnan(fix.time_s)) throw csv.error(columns.time, "is missing or infinite", "a finite time");
+  if (columns.speed >= 0) {
     constexpr double kKnot_mps = 1852.0 / 3600.0;
-    const double course_rad = radians(csv.number(static_cast<std::size_t>(layout.course)));
-    fix.velocity_mps = kKnot_mps * csv.number(static_cast<std::size_t>(layout.speed)) *
+    const double course_rad = radians(csv.number(static_cast<std::size_t>(columns.course)));
+    fix.velocity_mps = kKnot_mps * csv.number(static_cast<std::size_t>(columns.speed)) *
                        Eigen::Vector2d(std::sin(course_rad), std::cos(course_rad));
   }
   if (std::isnan(fix.latitude_deg) || std::isnan(fix.longitude_deg)) fix.latitude_deg = fix.longitude_deg = kNaN;
   return fix;
 }
 
-double read_target(const CsvReader& csv, const Layout& layout) {
-  if (layout.target < 0) return 0.0;
-  const auto column = static_cast<std::size_t>(layout.target);
+double read_target(const CsvReader& csv, const FixColumns& columns) {
+  if (columns.target < 0) return 0.0;
+  const auto column = static_cast<std::size_t>(columns.target);
   const double number = csv.number(column);
   if (std::isnan(number) || number != std::floor(number))
     throw csv.error(column, fmt::format("is \"{}\"", csv.text(column)), "an integer");
@@ -99,17 +99,17 @@ double read_target(const CsvReader& csv, const Layout& layout) {
 }
 
 std::vector<Target> read_targets(CsvReader& csv) {
-  const Layout layout = read_layout(csv);
+  const FixColumns columns = find_columns(csv);
   std::vector<Target> targets;
   while (csv.next()) {
-    const double number = read_target(csv, layout);
-    const Fix fix = read_fix(csv, layout);
+    const double number = read_target(csv, columns);
+    const Fix fix = read_fix(csv, columns);
     auto target = std::find_if(targets.begin(), targets.end(), [&](const Target& t) { return t.number == number; });
     if (target == targets.end()) target = targets.insert(targets.end(), Target{number, {}});
     if (!target->fixes.empty()) {
       const Fix& last = target->fixes.back();
       if (fix.time_s < last.time_s)
-        throw csv.error(layout.time, fmt::format("is {}, earlier than {} before it", fix.time_s, last.time_s),
+        throw csv.error(columns.time, fmt::format("is {}, earlier than {} before it", fix.time_s, last.time_s),
                         "times that do not decrease");
       if (fix == last) {
         ++target->repeated;
@@ -225,7 +225,7 @@ Recording make_recording(const Target& target, const GeographicTrackOptions& opt
 GeographicTracks read_tracks(CsvReader csv, const GeographicTrackOptions& options) {
   GeographicTracks tracks;
   GeographicTrackOptions believed = options;
-  believed.recorded_velocity &= read_layout(csv).speed >= 0;
+  believed.recorded_velocity &= find_columns(csv).speed >= 0;
   for (Target& target : read_targets(csv)) {
     remove_glitches(target, options.max_speed_mps);
     const auto usable =

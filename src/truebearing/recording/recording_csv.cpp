@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string_view>
 
 #include "truebearing/core/angle.hpp"
+#include "truebearing/core/constants.hpp"
 #include "truebearing/core/error.hpp"
 #include "truebearing/io/csv.hpp"
 #include "truebearing/recording/velocity_truth.hpp"
@@ -18,7 +18,6 @@
 namespace truebearing {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kRadiansPerDegree = radians(1.0);
 
 /// Multiplies a number of a log to make it one of the program.
@@ -64,7 +63,7 @@ struct Column {
 };
 
 /// Which column of a log means what.
-struct Layout {
+struct CsvLayout {
   std::size_t time = 0;
   std::vector<std::string> measured;
   std::vector<Column> z;
@@ -97,7 +96,7 @@ std::vector<std::size_t> columns_of(const CsvReader& csv, const std::array<const
   return columns;
 }
 
-void find_truth(const CsvReader& csv, const std::vector<std::size_t>& columns, Layout& layout) {
+void find_truth(const CsvReader& csv, const std::vector<std::size_t>& columns, CsvLayout& layout) {
   if (columns.empty()) return;
   std::vector<std::string> given;
   for (const std::size_t index : columns) given.push_back(csv.header()[index].substr(kTruthPrefix.size()));
@@ -115,8 +114,8 @@ void find_truth(const CsvReader& csv, const std::vector<std::size_t>& columns, L
   }
 }
 
-Layout read_layout(const CsvReader& csv) {
-  Layout layout;
+CsvLayout read_csv_layout(const CsvReader& csv) {
+  CsvLayout layout;
   layout.time = csv.required_column("time_s");
   layout.sensor = columns_of(csv, kSensorColumns, "own-ship");
   layout.guess = columns_of(csv, kGuessColumns, "guess");
@@ -165,7 +164,7 @@ bool identical(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 // A row without a guess has empty cells there.
-std::optional<TargetGuess> read_guess(const CsvReader& csv, const Layout& layout, const std::vector<double>& row) {
+std::optional<TargetGuess> read_guess(const CsvReader& csv, const CsvLayout& layout, const std::vector<double>& row) {
   if (layout.guess.empty() || std::isnan(row[layout.guess[0]])) return std::nullopt;
   for (const std::size_t index : layout.guess)
     if (!(row[index] > 0.0)) throw csv.error(index, fmt::format("is {}", row[index]), "a number > 0");
@@ -177,7 +176,7 @@ std::optional<TargetGuess> read_guess(const CsvReader& csv, const Layout& layout
   return guess;
 }
 
-Measurement read_measurement(const CsvReader& csv, const Layout& layout, const std::vector<double>& row) {
+Measurement read_measurement(const CsvReader& csv, const CsvLayout& layout, const std::vector<double>& row) {
   Measurement measurement;
   measurement.time_s = row[layout.time];
   measurement.z.resize(static_cast<Eigen::Index>(layout.z.size()));
@@ -204,14 +203,14 @@ Measurement read_measurement(const CsvReader& csv, const Layout& layout, const s
   return measurement;
 }
 
-BoundedVector read_truth(const Layout& layout, const std::vector<double>& row) {
+BoundedVector read_truth(const CsvLayout& layout, const std::vector<double>& row) {
   BoundedVector x = BoundedVector::Constant(static_cast<Eigen::Index>(layout.truth.size()), kNaN);
   for (std::size_t i = 0; i < layout.truth.size(); ++i)
     if (const auto& column = layout.truth[i]) x(static_cast<Eigen::Index>(i)) = row[column->index] * column->factor;
   return x;
 }
 
-void complete_truth(const Layout& layout, Recording& recording) {
+void complete_truth(const CsvLayout& layout, Recording& recording) {
   std::vector<double> time_s;
   for (const Measurement& measurement : recording.measurements) time_s.push_back(measurement.time_s);
   std::vector<bool> given;
@@ -220,7 +219,7 @@ void complete_truth(const Layout& layout, Recording& recording) {
 }
 
 Recording read_rows(CsvReader csv) {
-  const Layout layout = read_layout(csv);
+  const CsvLayout layout = read_csv_layout(csv);
   Recording recording;
   recording.measured = layout.measured;
   recording.truth_space = layout.truth_space;

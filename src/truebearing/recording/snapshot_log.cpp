@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "truebearing/core/angle.hpp"
+#include "truebearing/core/constants.hpp"
 #include "truebearing/core/error.hpp"
 #include "truebearing/io/file.hpp"
 #include "truebearing/io/hdf5_file.hpp"
@@ -24,7 +25,6 @@ namespace {
 using Complex = std::complex<double>;
 using Shape = std::vector<std::uint64_t>;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr Complex kNothing{kNaN, kNaN};
 
 constexpr const char* kSnapshots = "snapshots";
@@ -40,7 +40,7 @@ constexpr std::uint64_t kMaxTargets = 256;
 constexpr std::uint64_t kMaxTruths = 10'000'000;
 
 /// Of one array: what every interval has in common.
-struct Layout {
+struct SnapshotLayout {
   std::uint64_t intervals = 0;
   std::uint64_t snapshots = 0;
   std::uint64_t sensors = 0;
@@ -54,7 +54,7 @@ std::string text_of(const Shape& shape) {
   return fmt::format("({})", fmt::join(shape, ", "));
 }
 
-void check_size(const Layout& layout, const std::string& where) {
+void check_size(const SnapshotLayout& layout, const std::string& where) {
   const auto within = [](std::uint64_t size, std::uint64_t most) { return size >= 1 && size <= most; };
   if (!within(layout.intervals, kMaxIntervals) || !within(layout.snapshots, kMaxSnapshots) ||
       !within(layout.sensors, kMaxSensors))
@@ -106,14 +106,14 @@ double read_spacing(const Hdf5Reader& file) {
   return *spacing_m / wavelength_m;
 }
 
-Layout read_layout(const Hdf5Reader& file) {
+SnapshotLayout read_snapshot_layout(const Hdf5Reader& file) {
   constexpr const char* kValid = "(interval, snapshot, sensor, 2), real and imaginary part";
   if (!file.has(kSnapshots))
     throw InputError(file.where(kSnapshots), "is missing", fmt::format("a dataset {}", kValid));
   const Shape shape = file.shape(kSnapshots);
   if (shape.size() != 4 || shape[3] != 2)
     throw InputError(file.where(kSnapshots), "is of shape " + text_of(shape), kValid);
-  Layout layout;
+  SnapshotLayout layout;
   layout.intervals = shape[0];
   layout.snapshots = shape[1];
   layout.sensors = shape[2];
@@ -123,7 +123,7 @@ Layout read_layout(const Hdf5Reader& file) {
   return layout;
 }
 
-std::vector<double> read_times(const Hdf5Reader& file, const Layout& layout) {
+std::vector<double> read_times(const Hdf5Reader& file, const SnapshotLayout& layout) {
   std::vector<double> time_s(layout.intervals);
   if (!file.has(kTime)) {
     const double first_time_s = attribute(file, "first_time_s", false).value_or(0.0);
@@ -192,7 +192,7 @@ TruthTable read_truth(const Hdf5Reader& file, const std::vector<double>& time_s)
   return truth;
 }
 
-std::vector<Complex> read_values(const Hdf5Reader& file, const Layout& layout) {
+std::vector<Complex> read_values(const Hdf5Reader& file, const SnapshotLayout& layout) {
   std::vector<Complex> values(layout.intervals * layout.values_per_interval());
   // A complex number is an array of its two parts: [complex.numbers.general].
   file.read(kSnapshots, {reinterpret_cast<double*>(values.data()), 2 * values.size()});
@@ -209,7 +209,7 @@ bool same(std::span<const Complex> a, std::span<const Complex> b) {
                     [](Complex x, Complex y) { return same(x.real(), y.real()) && same(x.imag(), y.imag()); });
 }
 
-Recording make_recording(const Layout& layout, const std::vector<double>& time_s, TruthTable& truth,
+Recording make_recording(const SnapshotLayout& layout, const std::vector<double>& time_s, TruthTable& truth,
                          std::vector<Complex> values) {
   Recording recording;
   recording.measured = {kSnapshots};
@@ -239,7 +239,7 @@ Recording make_recording(const Layout& layout, const std::vector<double>& time_s
 }
 
 /// What the recording's intervals have in common; throws where they have not.
-Layout layout_of(const Recording& recording, const std::string& name) {
+SnapshotLayout snapshot_layout(const Recording& recording, const std::string& name) {
   if (!measures_snapshots(recording.measured))
     throw InputError(name, fmt::format("would hold {}", fmt::join(recording.measured, ", ")),
                      "the snapshots of a line array");
@@ -255,8 +255,8 @@ Layout layout_of(const Recording& recording, const std::string& name) {
       throw InputError(name, fmt::format("would hold another array or interval at {} s", measurement.time_s),
                        "one array, and as many snapshots in every interval");
   }
-  const Layout layout{measurements.size(), static_cast<std::uint64_t>(array.snapshots()),
-                      static_cast<std::uint64_t>(array.sensors), array.interval_s, array.spacing_wavelengths};
+  const SnapshotLayout layout{measurements.size(), static_cast<std::uint64_t>(array.snapshots()),
+                              static_cast<std::uint64_t>(array.sensors), array.interval_s, array.spacing_wavelengths};
   check_size(layout, name);
   const auto positive = [](double value) { return std::isfinite(value) && value > 0.0; };
   if (!positive(layout.interval_s) || !positive(layout.spacing_wavelengths))
@@ -305,7 +305,7 @@ bool is_snapshot_log(const std::filesystem::path& path) {
 
 Recording read_snapshot_log(const std::filesystem::path& path) {
   const Hdf5Reader file(path);
-  const Layout layout = read_layout(file);
+  const SnapshotLayout layout = read_snapshot_layout(file);
   const std::vector<double> time_s = read_times(file, layout);
   TruthTable truth = read_truth(file, time_s);
   return make_recording(layout, time_s, truth, read_values(file, layout));
@@ -313,7 +313,7 @@ Recording read_snapshot_log(const std::filesystem::path& path) {
 
 void write_snapshot_log(const std::filesystem::path& path, const Recording& recording) {
   const std::string name = path.string();
-  const Layout layout = layout_of(recording, name);
+  const SnapshotLayout layout = snapshot_layout(recording, name);
   check_times(recording, name);
   Hdf5Writer file(name);
   file.add(kSnapshots, {layout.intervals, layout.snapshots, layout.sensors, 2});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <toml++/toml.h>
 #include <utility>
 
 #include "truebearing/core/chi_square.hpp"

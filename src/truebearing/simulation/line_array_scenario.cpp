@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <limits>
 #include <numbers>
 
 #include "truebearing/core/angle.hpp"
+#include "truebearing/core/constants.hpp"
 
 namespace truebearing {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr int kMostDraws = 10000;
 
 // One target over the run: its angle and rate at the end of every interval, and of the one before the first.

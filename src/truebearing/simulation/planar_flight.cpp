@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "truebearing/core/angle.hpp"
+#include "truebearing/core/constants.hpp"
 
 namespace truebearing {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct Rates {
   double turn_radps = 0.0;

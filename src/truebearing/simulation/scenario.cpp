@@ -41,8 +41,7 @@ std::unique_ptr<Scenario> read_scenario(TableReader table, const ScenarioKinds& 
 }
 
 std::unique_ptr<Scenario> load_scenario(const std::filesystem::path& path, const ScenarioKinds& more) {
-  const toml::table table = read_toml_file(path);
-  return read_scenario(TableReader(table, path.string()), more);
+  return read_scenario(TableReader(read_toml_file(path), path.string()), more);
 }
 
 }  // namespace truebearing

@@ -1,5 +1,7 @@
 #include "truebearing/study/angle_trackers.hpp"
 
+#include <toml++/toml.h>
+
 #include "truebearing/core/angle.hpp"
 #include "truebearing/tracker/joint_angle_tracker.hpp"
 #include "truebearing/tracker/subspace_angle_tracker.hpp"

@@ -1,6 +1,7 @@
 #include "truebearing/study/configuration_text.hpp"
 
 #include <fmt/format.h>
+#include <toml++/toml.h>
 
 namespace truebearing {
 

@@ -3,7 +3,8 @@
 #pragma once
 
 #include <string>
-#include <toml++/toml.h>
+
+#include "truebearing/io/toml_forward.hpp"
 
 namespace truebearing {
 

@@ -1,6 +1,8 @@
 #include "truebearing/study/correction_spec.hpp"
 
-#include <limits>
+#include <toml++/toml.h>
+
+#include "truebearing/core/constants.hpp"
 
 namespace truebearing {
 namespace {
@@ -36,7 +38,6 @@ TrainingSpec::Mirror read_mirror(TableReader& table) {
 
 // kappa = a number, or inf for no limit.
 double read_kappa(TableReader& table) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const toml::node* node = table.node("kappa");
   if (node && node->value<double>() == kInfinity) return kInfinity;
   return table.number_or("kappa", CorrectionBounds{}.kappa, kPositive);

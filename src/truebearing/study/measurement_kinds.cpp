@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <toml++/toml.h>
 #include <vector>
 
 #include "truebearing/core/angle.hpp"
@@ -122,7 +123,7 @@ MeasurementChoice read_measurement(TableReader& tracker, double factor) {
 }
 
 bool measures(const TableReader& tracker, const std::string& model) {
-  const toml::table* measurement = tracker.raw()["measurement"].as_table();
+  const toml::table* measurement = (*tracker.raw())["measurement"].as_table();
   return measurement && (*measurement)["model"].value_or(std::string()) == model;
 }
 

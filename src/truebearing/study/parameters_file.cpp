@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <string_view>
+#include <toml++/toml.h>
 
 #include "truebearing/core/error.hpp"
 #include "truebearing/io/table_reader.hpp"
@@ -29,10 +30,47 @@ std::string toml_key(std::string_view name) {
   return bare ? std::string(name) : toml_text(name);
 }
 
+void put_numbers(toml::table& table, const std::string& path, const std::vector<double>& values) {
+  // An element of an array, or a table inside one, exists: tuned numbers replace numbers. Anything else is made.
+  if (path.find('[') != std::string::npos) {
+    if (auto node = table.at_path(path)) {
+      if (auto* array = node.as_array()) {
+        array->clear();
+        for (const double value : values) array->push_back(value);
+        return;
+      }
+      const std::size_t dot = path.rfind('.');
+      if (dot != std::string::npos)
+        if (auto* parent = table.at_path(path.substr(0, dot)).as_table()) {
+          parent->insert_or_assign(path.substr(dot + 1), values.front());
+          return;
+        }
+    }
+    throw InputError(path, "is no number of the tracker");
+  }
+  toml::table* parent = &table;
+  std::size_t begin = 0;
+  for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', begin)) {
+    auto* next = parent->get_as<toml::table>(path.substr(begin, dot - begin));
+    if (!next) next = parent->insert_or_assign(path.substr(begin, dot - begin), toml::table{}).first->second.as_table();
+    parent = next;
+    begin = dot + 1;
+  }
+  const std::string last = path.substr(begin);
+  const toml::node* old = parent->get(last);
+  if (values.size() == 1 && !(old && old->is_array())) {
+    parent->insert_or_assign(last, values.front());
+    return;
+  }
+  toml::array array;
+  for (const double value : values) array.push_back(value);
+  parent->insert_or_assign(last, std::move(array));
+}
+
 }  // namespace
 
 ParametersFile read_parameters_file(const std::filesystem::path& path) {
-  const toml::table table = read_toml_file(path);
+  const SharedTable table = read_toml_file(path);
   ParametersFile parameters;
   TableReader reader(table, path.string());
   for (const std::string& name : reader.keys()) {
@@ -80,41 +118,10 @@ std::vector<double> numbers_at(const toml::table& table, const std::string& path
   return values;
 }
 
-void put_numbers(toml::table& table, const std::string& path, const std::vector<double>& values) {
-  // An element of an array, or a table inside one, exists: tuned numbers replace numbers. Anything else is made.
-  if (path.find('[') != std::string::npos) {
-    if (auto node = table.at_path(path)) {
-      if (auto* array = node.as_array()) {
-        array->clear();
-        for (const double value : values) array->push_back(value);
-        return;
-      }
-      const std::size_t dot = path.rfind('.');
-      if (dot != std::string::npos)
-        if (auto* parent = table.at_path(path.substr(0, dot)).as_table()) {
-          parent->insert_or_assign(path.substr(dot + 1), values.front());
-          return;
-        }
-    }
-    throw InputError(path, "is no number of the tracker");
-  }
-  toml::table* parent = &table;
-  std::size_t begin = 0;
-  for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', begin)) {
-    auto* next = parent->get_as<toml::table>(path.substr(begin, dot - begin));
-    if (!next) next = parent->insert_or_assign(path.substr(begin, dot - begin), toml::table{}).first->second.as_table();
-    parent = next;
-    begin = dot + 1;
-  }
-  const std::string last = path.substr(begin);
-  const toml::node* old = parent->get(last);
-  if (values.size() == 1 && !(old && old->is_array())) {
-    parent->insert_or_assign(last, values.front());
-    return;
-  }
-  toml::array array;
-  for (const double value : values) array.push_back(value);
-  parent->insert_or_assign(last, std::move(array));
+SharedTable with_numbers(const toml::table& table, const std::string& path, const std::vector<double>& values) {
+  toml::table result = table;
+  put_numbers(result, path, values);
+  return std::make_shared<const toml::table>(std::move(result));
 }
 
 }  // namespace truebearing

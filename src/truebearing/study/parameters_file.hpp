@@ -7,9 +7,10 @@
 #include <filesystem>
 #include <map>
 #include <string>
-#include <toml++/toml.h>
 #include <utility>
 #include <vector>
+
+#include "truebearing/io/toml_forward.hpp"
 
 namespace truebearing {
 
@@ -27,7 +28,7 @@ std::string parameters_text(const ParametersFile& parameters);
 
 /// The numbers at a dotted path of a tracker's table. Throws InputError where there are none, or one that is not > 0.
 std::vector<double> numbers_at(const toml::table& table, const std::string& path, const std::string& where);
-/// Puts numbers there, as an array or as a lone number as it was.
-void put_numbers(toml::table& table, const std::string& path, const std::vector<double>& values);
+/// The table with these numbers there, as an array or as a lone number as it was.
+SharedTable with_numbers(const toml::table& table, const std::string& path, const std::vector<double>& values);
 
 }  // namespace truebearing

@@ -1,5 +1,7 @@
 #include "truebearing/study/passive_sonar_configuration.hpp"
 
+#include <toml++/toml.h>
+
 #include "truebearing/core/chi_square.hpp"
 #include "truebearing/study/measurement_kinds.hpp"
 #include "truebearing/study/tracker_registry.hpp"
@@ -11,14 +13,14 @@ namespace {
 // The tracker of a sub-table, which inherits what it does not say of the sensor and the space.
 std::unique_ptr<Tracker> make_part(TableReader& table, const std::string& part, const toml::table& defaults) {
   TableReader given = table.table(part);
-  toml::table whole = given.raw();
+  toml::table whole = *given.raw();
   const auto inherit = [&](const std::string& key, const toml::node* value) {
     if (value && !whole.contains(key)) whole.insert(key, *value);
   };
   for (const auto& [key, value] : defaults) inherit(std::string(key.str()), &value);
   inherit("measurement", table.node("measurement"));
   if (part == "filter" && table.has("space")) inherit("space", table.node("space"));
-  TableReader reader(whole, given.file(), given.path());
+  TableReader reader(std::make_shared<const toml::table>(std::move(whole)), given.file(), given.path());
   return make_tracker(reader.text("kind"), reader);
 }
 

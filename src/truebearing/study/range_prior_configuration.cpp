@@ -1,16 +1,14 @@
 #include "truebearing/study/range_prior_configuration.hpp"
 
 #include <fmt/format.h>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "truebearing/core/angle.hpp"
+#include "truebearing/core/constants.hpp"
 
 namespace truebearing {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 RangePrior::Course read_course(TableReader table, bool guessed) {
   RangePrior::Course course{kNaN, kNaN, 0.0, 0.0};

@@ -1,6 +1,7 @@
 #include "truebearing/study/study.hpp"
 
 #include <algorithm>
+#include <toml++/toml.h>
 
 #include "truebearing/study/configuration_text.hpp"
 #include "truebearing/tracker/step_log_scenario.hpp"
@@ -12,7 +13,7 @@ namespace {
 const ScenarioKinds kMoreScenarios{{"step_logs", read_step_log_scenario}};
 
 // The trackers in the order of their file, which a merged table has lost.
-std::vector<std::string> tracker_order(const toml::table& study, const std::filesystem::path& path) {
+std::vector<std::string> tracker_order(const SharedTable& study, const std::filesystem::path& path) {
   TableReader reader(study, path.string());
   const auto trackers = reader.table_if_present("trackers");
   return trackers ? trackers->keys() : std::vector<std::string>{};
@@ -30,21 +31,21 @@ std::vector<std::string> joined(std::vector<std::string> first, const std::vecto
 Study Study::load(const std::filesystem::path& path) {
   Study study;
   study.path_ = path;
-  toml::table table = read_toml_file(path);
+  SharedTable table = read_toml_file(path);
   std::vector<std::string> order = tracker_order(table, path);
   if (TableReader reader(table, path.string()); reader.has("like")) {
     const std::filesystem::path parent = reader.text("like");
     if (parent.has_parent_path()) throw reader.error("like", "names a folder", "a study beside this one");
-    toml::table inherited = read_toml_file(path.parent_path() / parent);
-    if (inherited.contains("like")) throw reader.error("like", "names a study that is itself `like` another");
+    const SharedTable inherited = read_toml_file(path.parent_path() / parent);
+    if (inherited->contains("like")) throw reader.error("like", "names a study that is itself `like` another");
     order = joined(tracker_order(inherited, parent), order);
-    table = merged(inherited, table);
+    table = std::make_shared<const toml::table>(merged(*inherited, *table));
   }
   study.read(table, order);
   return study;
 }
 
-void Study::read(const toml::table& table, const std::vector<std::string>& order) {
+void Study::read(const SharedTable& table, const std::vector<std::string>& order) {
   TableReader reader(table, path_.string());
   reader.node("like");
   name_ = reader.text("name");

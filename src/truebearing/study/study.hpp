@@ -53,7 +53,7 @@ class Study {
   const std::optional<ParametersFile>& parameters() const { return parameters_; }
 
   /// A tracker's table with its tuned numbers in it. Throws InputError where those are missing.
-  toml::table configuration_of(const std::string& name) const;
+  SharedTable configuration_of(const std::string& name) const;
   /// The same on one line with its kind: how a model file remembers a tracker.
   std::string configuration_line(const std::string& name) const;
   /// A tracker of the study, ready to step; a corrected one brings its own ensemble, and its model from `models`, else
@@ -76,7 +76,7 @@ class Study {
 
  private:
   Study() = default;
-  void read(const toml::table& table, const std::vector<std::string>& order);
+  void read(const SharedTable& table, const std::vector<std::string>& order);
   void check_trackers();
   void check_replay(const TrackerSpec& spec, const Tracker& tracker);
 

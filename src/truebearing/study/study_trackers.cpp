@@ -1,6 +1,7 @@
 // The trackers that a study names, made: with their tuned numbers, and corrected by their models.
 #include <algorithm>
 #include <fmt/format.h>
+#include <toml++/toml.h>
 
 #include "truebearing/core/suggestion.hpp"
 #include "truebearing/correction/corrected_tracker.hpp"
@@ -16,9 +17,9 @@ const TrackerSpec& Study::tracker(const std::string& name) const {
   throw InputError(path_.string(), "there is no tracker \"" + name + "\"", suggestion(name, names_of(trackers_)));
 }
 
-toml::table Study::configuration_of(const std::string& name) const {
+SharedTable Study::configuration_of(const std::string& name) const {
   const TrackerSpec& spec = tracker(name);
-  toml::table configuration = spec.configuration;
+  SharedTable configuration = spec.configuration;
   if (spec.tune.empty()) return configuration;
   const std::string command = fmt::format("`truebearing tune {}`", path_.string());
   const TunedValues* values = nullptr;
@@ -31,16 +32,16 @@ toml::table Study::configuration_of(const std::string& name) const {
                      parameters_path_.empty() ? "a key `parameters` that names their file" : "run " + command);
   for (const std::string& path : spec.tune) {
     const auto found = values->find(path);
-    const std::size_t wanted = numbers_at(configuration, path, "trackers." + name + ".tune").size();
+    const std::size_t wanted = numbers_at(*configuration, path, "trackers." + name + ".tune").size();
     if (found == values->end() || found->second.size() != wanted)
       throw InputError(parameters_path_.string() + ": " + name, "does not hold " + path, "run " + command);
-    put_numbers(configuration, path, found->second);
+    configuration = with_numbers(*configuration, path, found->second);
   }
   return configuration;
 }
 
 std::string Study::configuration_line(const std::string& name) const {
-  return tracker(name).kind + " " + configuration_text(configuration_of(name));
+  return tracker(name).kind + " " + configuration_text(*configuration_of(name));
 }
 
 std::unique_ptr<Tracker> Study::make_tracker(const std::string& name, const CorrectionModels& models) const {
@@ -51,8 +52,7 @@ std::unique_ptr<Tracker> Study::make_tracker(const std::string& name, const Corr
                                               given == models.end() ? load_model(name) : given->second,
                                               spec.correction->bounds);
   }
-  const toml::table configuration = configuration_of(name);
-  TableReader reader(configuration, path_.string(), "trackers." + name);
+  TableReader reader(configuration_of(name), path_.string(), "trackers." + name);
   return truebearing::make_tracker(spec.kind, reader);
 }
 

@@ -1,6 +1,7 @@
 #include "truebearing/study/tracker_spec.hpp"
 
 #include <set>
+#include <toml++/toml.h>
 
 #include "truebearing/core/suggestion.hpp"
 #include "truebearing/study/configuration_text.hpp"
@@ -15,13 +16,13 @@ constexpr const char* kStudyKeys[] = {"kind", "like", "tune", "show"};
 toml::table resolved(TableReader& trackers, const std::string& name, std::set<std::string> seen = {}) {
   if (!seen.insert(name).second) throw trackers.error(name, "is `like` itself");
   TableReader table = trackers.table(name);
-  if (!table.has("like")) return table.raw();
+  if (!table.has("like")) return *table.raw();
   const std::string parent = table.text("like");
   if (!trackers.has(parent))
     throw table.error("like", "names no tracker: \"" + parent + "\"", suggestion(parent, trackers.keys()));
   toml::table inherited = resolved(trackers, parent, seen);
   for (const char* key : {"tune", "show", "like"}) inherited.erase(key);
-  return merged(inherited, table.raw());
+  return merged(inherited, *table.raw());
 }
 
 }  // namespace
@@ -31,21 +32,22 @@ std::vector<TrackerSpec> read_tracker_specs(TableReader table, const std::vector
   for (const std::string& name : order) {
     TrackerSpec spec;
     spec.name = name;
-    spec.configuration = resolved(table, name);
-    TableReader reader(spec.configuration, table.file(), "trackers." + name);
+    toml::table resolved_table = resolved(table, name);
+    TableReader reader(std::make_shared<const toml::table>(resolved_table), table.file(), "trackers." + name);
     spec.kind = reader.text("kind");
     spec.shown = reader.boolean_or("show", true);
     if (reader.has("tune")) {
       spec.tune = reader.texts("tune");
       for (const std::string& path : spec.tune)
-        numbers_at(spec.configuration, path, table.file() + ": trackers." + name + ".tune");
+        numbers_at(*reader.raw(), path, table.file() + ": trackers." + name + ".tune");
     }
     ask_for_study_keys(reader);
     if (spec.kind == "corrected") {
       spec.correction = read_correction_spec(reader);
       reader.finish();
     }
-    for (const char* key : kStudyKeys) spec.configuration.erase(key);
+    for (const char* key : kStudyKeys) resolved_table.erase(key);
+    spec.configuration = std::make_shared<const toml::table>(std::move(resolved_table));
     trackers.push_back(std::move(spec));
   }
   if (trackers.empty()) throw table.error("", "names no tracker", "at least one");

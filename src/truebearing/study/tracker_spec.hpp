@@ -3,7 +3,6 @@
 
 #include <optional>
 #include <string>
-#include <toml++/toml.h>
 #include <vector>
 
 #include "truebearing/io/table_reader.hpp"
@@ -14,7 +13,7 @@ namespace truebearing {
 struct TrackerSpec {
   std::string name;
   std::string kind;
-  toml::table configuration;                 ///< its table, over that of the tracker it is `like`
+  SharedTable configuration;                 ///< its table, over that of the tracker it is `like`
   std::vector<std::string> tune;             ///< dotted paths of the numbers that `truebearing tune` fits
   bool shown = true;                         ///< false for companions that no table needs
   std::optional<CorrectionSpec> correction;  ///< where kind is "corrected"

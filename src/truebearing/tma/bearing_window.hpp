@@ -3,7 +3,6 @@
 // (modified_polar.hpp). Arrays by component, so that a pass over the window runs in SIMD instructions.
 #pragma once
 
-#include <limits>
 #include <vector>
 
 #include "truebearing/measurement/measurement.hpp"

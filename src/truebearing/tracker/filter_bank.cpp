@@ -2,16 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
+#include "truebearing/core/constants.hpp"
+
 namespace truebearing {
-namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-}  // namespace
+namespace {}  // namespace
 
 FilterBank::FilterBank(const StateSpace& space, std::unique_ptr<FilterGroup> group,
                        std::vector<std::unique_ptr<AnySensor>> sensors, std::vector<Hypothesis> hypotheses,

@@ -7,13 +7,13 @@
 
 #include "tests/support/array_scene.hpp"
 
+#include "truebearing/core/constants.hpp"
+
 namespace truebearing::interval_test {
 namespace {
 
 using testing::ArrayScene;
 using testing::Snapshots;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 ArrayScene noise(int sensors, int snapshots) {
   ArrayScene scene;

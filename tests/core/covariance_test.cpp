@@ -5,15 +5,12 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <cmath>
-#include <limits>
 
+#include "truebearing/core/constants.hpp"
 #include "truebearing/core/random.hpp"
 
 namespace truebearing::covariance_test {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Eigen::MatrixXd random_matrix(int rows, int columns, RandomStream& stream) {
   Eigen::MatrixXd A(rows, columns);

@@ -9,6 +9,7 @@
 #include "tests/support/fakes.hpp"
 #include "tests/support/line_trackers.hpp"
 #include "tests/support/plane_trackers.hpp"
+#include "truebearing/core/constants.hpp"
 #include "truebearing/correction/corrected_tracker.hpp"
 #include "truebearing/evaluation/tracker_set.hpp"
 #include "truebearing/tracker/filter_bank.hpp"
@@ -17,7 +18,6 @@ namespace truebearing::correction_allocation_test {
 namespace {
 
 using testing::allocations_of;
-using testing::kNaN;
 using testing::position;
 using testing::radar_log;
 using testing::RadarFilter;

@@ -9,6 +9,7 @@
 #include "tests/support/error_message.hpp"
 #include "tests/support/fakes.hpp"
 #include "tests/support/line_trackers.hpp"
+#include "truebearing/core/constants.hpp"
 #include "truebearing/core/covariance.hpp"
 #include "truebearing/correction/corrected_tracker.hpp"
 
@@ -18,8 +19,6 @@ namespace {
 using testing::box;
 using testing::error_message;
 using ::testing::HasSubstr;
-using testing::kInfinity;
-using testing::kNaN;
 using testing::line_model;
 using testing::position;
 using testing::radar_features;

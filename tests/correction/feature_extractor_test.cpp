@@ -5,6 +5,7 @@
 
 #include "tests/support/error_message.hpp"
 #include "tests/support/line_trackers.hpp"
+#include "truebearing/core/constants.hpp"
 #include "truebearing/filter/kalman.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
 #include "truebearing/tracker/filter_tracker_of.hpp"
@@ -15,7 +16,6 @@ namespace {
 
 using testing::error_message;
 using ::testing::HasSubstr;
-using testing::kNaN;
 
 const RecordBlocks kAll{.prediction = true, .innovation = true, .gain = true, .mode_probabilities = false};
 
@@ -262,7 +262,7 @@ TEST(FeatureExtractor, UnknownComponentIsRefusedWithTheNearest) {
 }
 
 TEST(FeatureExtractor, ConstantsOutOfRangeAreRefused) {
-  for (const double bad : {0.0, -1.0, kNaN, testing::kInfinity}) {
+  for (const double bad : {0.0, -1.0, kNaN, kInfinity}) {
     EXPECT_THAT(refusal({.kind = FeatureKind::innovation_average, .alpha = bad}), HasSubstr("alpha"));
     EXPECT_THAT(refusal({.kind = FeatureKind::log_mean_nis, .offset = bad}), HasSubstr("offset"));
     EXPECT_THAT(

@@ -8,11 +8,10 @@
 
 #include "tests/support/line_trackers.hpp"
 
+#include "truebearing/core/constants.hpp"
+
 namespace truebearing::limit_kappa_test {
 namespace {
-
-using testing::kInfinity;
-using testing::kNaN;
 
 BoundedMatrix random_covariance(RandomStream& random, Eigen::Index n, double decades) {
   const BoundedMatrix A = BoundedMatrix::NullaryExpr(n, n, [&] { return random.normal(); });

@@ -11,6 +11,7 @@
 #include "tests/support/angle_tracks.hpp"
 #include "tests/support/error_message.hpp"
 #include "truebearing/array/angle_information.hpp"
+#include "truebearing/core/constants.hpp"
 #include "truebearing/evaluation/angle_bound_summary.hpp"
 #include "truebearing/evaluation/comparison.hpp"
 #include "truebearing/evaluation/report.hpp"
@@ -22,7 +23,6 @@ namespace {
 using testing::error_message;
 using ::testing::HasSubstr;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSquareDegree = radians(1.0) * radians(1.0);
 constexpr LineArray kArray{15, 0.5};
 constexpr int kSnapshots = 30;

@@ -5,12 +5,13 @@
 #include "tests/support/line_trackers.hpp"
 #include "tests/support/metric_runs.hpp"
 
+#include "truebearing/core/constants.hpp"
+
 namespace truebearing::batch_metrics_test {
 namespace {
 
 using testing::figures;
 using testing::find_metric;
-using testing::kNaN;
 using testing::pointers;
 
 const Scorer kScorer(line_space(), line_space());

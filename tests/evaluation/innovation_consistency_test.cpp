@@ -4,6 +4,8 @@
 
 #include "tests/support/line_trackers.hpp"
 
+#include "truebearing/core/constants.hpp"
+
 namespace truebearing::innovation_consistency_test {
 namespace {
 
@@ -110,7 +112,7 @@ TEST(InnovationConsistency, CoastedStepsDoNotCount) {
   InnovationConsistency c;
   const auto tracker = RadarFilter{}.tracker();
   c.add(tracker->step(position(1.0, 0.0))[0]);
-  c.add(tracker->step(position(2.0, testing::kNaN))[0]);
+  c.add(tracker->step(position(2.0, kNaN))[0]);
   EXPECT_EQ(c.steps(), 1);
 }
 

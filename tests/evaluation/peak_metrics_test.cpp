@@ -6,6 +6,7 @@
 #include "tests/support/error_message.hpp"
 #include "tests/support/line_trackers.hpp"
 #include "tests/support/metric_runs.hpp"
+#include "truebearing/core/constants.hpp"
 #include "truebearing/evaluation/comparison.hpp"
 #include "truebearing/evaluation/metric_registry.hpp"
 #include "truebearing/evaluation/report.hpp"
@@ -16,7 +17,6 @@ namespace {
 using testing::error_message;
 using testing::find_metric;
 using ::testing::HasSubstr;
-using testing::kNaN;
 
 const Scorer kScorer(line_space(), line_space());
 

@@ -6,6 +6,7 @@
 #include "tests/support/angle_tracks.hpp"
 #include "tests/support/error_message.hpp"
 #include "tests/support/line_trackers.hpp"
+#include "truebearing/core/constants.hpp"
 #include "truebearing/evaluation/event_metrics.hpp"
 #include "truebearing/evaluation/gospa_metrics.hpp"
 #include "truebearing/evaluation/track_metrics.hpp"
@@ -16,7 +17,6 @@ namespace {
 
 using ::testing::ElementsAre;
 using testing::error_message;
-using testing::kNaN;
 using testing::position;
 using testing::RadarFilter;
 

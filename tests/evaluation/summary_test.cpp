@@ -5,11 +5,11 @@
 #include "tests/support/line_trackers.hpp"
 #include "tests/support/metric_runs.hpp"
 #include "truebearing/core/chi_square.hpp"
+#include "truebearing/core/constants.hpp"
 
 namespace truebearing::summary_test {
 namespace {
 
-using testing::kNaN;
 using testing::pointers;
 
 const Scorer kScorer(line_space(), line_space());

@@ -7,12 +7,13 @@
 #include "tests/support/line_trackers.hpp"
 #include "tests/support/metric_runs.hpp"
 
+#include "truebearing/core/constants.hpp"
+
 namespace truebearing::target_motion_metrics_test {
 namespace {
 
 using testing::figures;
 using testing::find_metric;
-using testing::kNaN;
 
 const Scorer kScorer(plane_space(), plane_space());
 

@@ -7,13 +7,13 @@
 #include "tests/support/line_trackers.hpp"
 #include "tests/support/metric_runs.hpp"
 
+#include "truebearing/core/constants.hpp"
+
 namespace truebearing::time_metrics_test {
 namespace {
 
 using testing::figures;
 using testing::find_metric;
-using testing::kInfinity;
-using testing::kNaN;
 
 const Scorer kScorer(line_space(), line_space());
 

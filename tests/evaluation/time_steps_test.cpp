@@ -4,10 +4,10 @@
 
 #include "tests/support/line_trackers.hpp"
 
+#include "truebearing/core/constants.hpp"
+
 namespace truebearing::time_steps_test {
 namespace {
-
-using testing::kNaN;
 
 Recording recording(const std::vector<double>& times_s) {
   Recording made;

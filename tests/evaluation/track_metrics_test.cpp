@@ -9,6 +9,7 @@
 #include "tests/support/angle_comparison.hpp"
 #include "tests/support/line_trackers.hpp"
 #include "tests/support/metric_runs.hpp"
+#include "truebearing/core/constants.hpp"
 #include "truebearing/evaluation/report.hpp"
 
 namespace truebearing::track_metrics_test {
@@ -17,7 +18,6 @@ namespace {
 using testing::figures;
 using testing::find_metric;
 using ::testing::HasSubstr;
-using testing::kNaN;
 using ::testing::Not;
 
 const Scorer kScorer(angle_space(), angle_space());

@@ -6,10 +6,11 @@
 
 #include "tests/support/line_trackers.hpp"
 
+#include "truebearing/core/constants.hpp"
+
 namespace truebearing::track_outcome_test {
 namespace {
 
-using testing::kNaN;
 using Values = std::vector<double>;
 
 const TrackRule kRule{.quantity = "angle_deg", .bad = 3.0, .last_steps = 2, .excursion = 6.0};

@@ -3,9 +3,8 @@
 
 #include <Eigen/Geometry>
 
-#include <limits>
-
 #include "tests/support/bearings.hpp"
+#include "truebearing/core/constants.hpp"
 #include "truebearing/core/covariance.hpp"
 #include "truebearing/filter/kalman.hpp"
 #include "truebearing/filter/log_polar.hpp"
@@ -18,7 +17,6 @@ namespace truebearing::bearing_filters_test {
 namespace {
 
 constexpr double kManySteps = 1e-7;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 using Motion = ConstantVelocity<2, ContinuousWhiteNoise>;
 using Vector1 = Eigen::Matrix<double, 1, 1>;

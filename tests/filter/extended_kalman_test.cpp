@@ -14,8 +14,8 @@ constexpr double kAlgebra = 1e-12;
 const TurningTarget<ContinuousWhiteNoise> kMotion{{2.0}, 0.01};
 
 template <typename Form>
-class ExtendedKalmanFilter : public testing::Test {};
-using Forms = testing::Types<Joseph, SquareRoot>;
+class ExtendedKalmanFilter : public ::testing::Test {};
+using Forms = ::testing::Types<Joseph, SquareRoot>;
 TYPED_TEST_SUITE(ExtendedKalmanFilter, Forms);
 
 TYPED_TEST(ExtendedKalmanFilter, PredictsByTheJacobianAtTheEstimateBefore) {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "tests/filter/linear_model.hpp"
+#include "truebearing/core/constants.hpp"
 #include "truebearing/core/covariance.hpp"
 #include "truebearing/core/random.hpp"
 #include "truebearing/measurement/position.hpp"
@@ -17,7 +18,6 @@ namespace {
 
 constexpr double kAlgebra = 1e-12;
 constexpr double kManySteps = 1e-9;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 using Vector1d = Eigen::Matrix<double, 1, 1>;
 
@@ -31,8 +31,8 @@ void fill_normal(RandomStream& random, Eigen::MatrixBase<Derived>& A) {
 }
 
 template <typename Form>
-class KalmanFilterForms : public testing::Test {};
-using Forms = testing::Types<Joseph, Conventional, SquareRoot>;
+class KalmanFilterForms : public ::testing::Test {};
+using Forms = ::testing::Types<Joseph, Conventional, SquareRoot>;
 TYPED_TEST_SUITE(KalmanFilterForms, Forms);
 
 TYPED_TEST(KalmanFilterForms, AgreeWithTheTextbookOnALinearProblem) {

@@ -25,12 +25,12 @@ struct Path {
 };
 
 template <typename Path>
-class LinearAgreement : public testing::Test {};
+class LinearAgreement : public ::testing::Test {};
 using Paths =
-    testing::Types<Path<KalmanFilter<4, Joseph>, Motion>, Path<KalmanFilter<4, Conventional>, Motion>,
-                   Path<KalmanFilter<4, SquareRoot>, Motion>, Path<KalmanFilter<4, Joseph>, AsNonlinear<Motion>>,
-                   Path<KalmanFilter<4, SquareRoot>, AsNonlinear<Motion>>, Path<UnscentedKalmanFilter<4>, Motion>,
-                   Path<UnscentedKalmanFilter<4>, AsNonlinear<Motion>>>;
+    ::testing::Types<Path<KalmanFilter<4, Joseph>, Motion>, Path<KalmanFilter<4, Conventional>, Motion>,
+                     Path<KalmanFilter<4, SquareRoot>, Motion>, Path<KalmanFilter<4, Joseph>, AsNonlinear<Motion>>,
+                     Path<KalmanFilter<4, SquareRoot>, AsNonlinear<Motion>>, Path<UnscentedKalmanFilter<4>, Motion>,
+                     Path<UnscentedKalmanFilter<4>, AsNonlinear<Motion>>>;
 TYPED_TEST_SUITE(LinearAgreement, Paths);
 
 TYPED_TEST(LinearAgreement, WithTheRecursionOverIrregularSteps) {

@@ -7,6 +7,7 @@
 #include "tests/filter/linear_model.hpp"
 #include "truebearing/core/angle.hpp"
 #include "truebearing/core/chi_square.hpp"
+#include "truebearing/core/constants.hpp"
 #include "truebearing/core/covariance.hpp"
 #include "truebearing/core/random.hpp"
 #include "truebearing/measurement/longer_state.hpp"
@@ -21,7 +22,6 @@ namespace {
 
 constexpr double kAlgebra = 1e-12;
 constexpr double kManySteps = 1e-9;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 using Vector1d = Eigen::Matrix<double, 1, 1>;
 using Turning = TurningTarget<ContinuousWhiteNoise>;

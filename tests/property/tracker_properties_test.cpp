@@ -6,13 +6,12 @@
 #include <vector>
 
 #include "tests/support/line_trackers.hpp"
+#include "truebearing/core/constants.hpp"
 #include "truebearing/core/covariance.hpp"
 #include "truebearing/study/tracker_registry.hpp"
 
 namespace truebearing::tracker_properties_test {
 namespace {
-
-using testing::kNaN;
 
 constexpr double kExact = 1e-9;  // relative: the same algebra in another order, over fifty steps
 constexpr int kRuns = 5, kSteps = 50;

@@ -10,7 +10,6 @@
 #include <csignal>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,6 +18,7 @@
 #include "tests/support/error_message.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "truebearing/core/angle.hpp"
+#include "truebearing/core/constants.hpp"
 
 namespace truebearing::snapshot_log_test {
 namespace {
@@ -31,9 +31,6 @@ using ::testing::HasSubstr;
 using testing::TemporaryFolder;
 using Complex = std::complex<double>;
 using Shape = std::vector<hsize_t>;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 bool same_bits(std::span<const Complex> a, std::span<const Complex> b) {
   const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };

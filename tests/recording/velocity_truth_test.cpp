@@ -3,12 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
+
+#include "truebearing/core/constants.hpp"
 
 namespace truebearing::velocity_truth_test {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 using Values = std::vector<double>;
 
 TEST(VelocityTruth, LineHasItsSlopeAtUnevenTimes) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 #include <set>
+#include <toml++/toml.h>
 
 #include "tests/support/error_message.hpp"
 #include "tests/support/statistics.hpp"
@@ -104,9 +105,10 @@ TEST(Scenario, ShiftOfSpeedIsToSixHundredEitherWay) {
 
 TEST(Scenario, FlightHasSpeedsAndKinksOfTheStudy) {
   // In the plane, where samples between knots lie on a line exactly.
-  SharedTable table = read_toml_file(path_of("radar_1d_flight"));
+  toml::table table = *read_toml_file(path_of("radar_1d_flight"));
   table.insert_or_assign("output", "plane");
-  const std::unique_ptr<Scenario> flight = read_scenario(TableReader(table, "radar_1d_flight.toml"));
+  const std::unique_ptr<Scenario> flight =
+      read_scenario(TableReader(std::make_shared<const toml::table>(std::move(table)), "radar_1d_flight.toml"));
   std::vector<double> interpolated, speeds_mps;
   for (std::uint64_t run = 0; run < 300; ++run) {
     const std::vector<BoundedVector> x = flight->simulate({1, Role::training, run}).truth[0].x;

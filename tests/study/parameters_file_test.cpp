@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <toml++/toml.h>
 
 #include "tests/support/error_message.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -39,24 +40,24 @@ TEST(ParametersFile, NumbersThatAreNotPositiveAreRefused) {
 TEST(NumbersAt, PathLeadsToNumbers) {
   const SharedTable table =
       parse_toml("[motion]\nvariance = [5, 0.1]\nsigma = 2\nname = \"x\"\nzero = [1.0, 0.0]\n", "s.toml");
-  EXPECT_EQ(numbers_at(table, "motion.variance", "here"), (std::vector<double>{5.0, 0.1}));
-  EXPECT_EQ(numbers_at(table, "motion.sigma", "here"), std::vector<double>{2.0});
+  EXPECT_EQ(numbers_at(*table, "motion.variance", "here"), (std::vector<double>{5.0, 0.1}));
+  EXPECT_EQ(numbers_at(*table, "motion.sigma", "here"), std::vector<double>{2.0});
   for (const char* bad : {"motion", "motion.name", "motion.other", "other.variance", "", "motion.variance.x"})
-    EXPECT_THAT(error_message([&] { numbers_at(table, bad, "here"); }), AllOf(HasSubstr("here"), HasSubstr(bad)))
+    EXPECT_THAT(error_message([&] { numbers_at(*table, bad, "here"); }), AllOf(HasSubstr("here"), HasSubstr(bad)))
         << bad;
-  EXPECT_THAT(error_message([&] { numbers_at(table, "motion.zero", "here"); }), HasSubstr("> 0"));
+  EXPECT_THAT(error_message([&] { numbers_at(*table, "motion.zero", "here"); }), HasSubstr("> 0"));
 }
 
-TEST(PutNumbers, KeepsArraysArraysAndNumbersNumbers) {
+TEST(WithNumbers, KeepsArraysArraysAndNumbersNumbers) {
   SharedTable table = parse_toml("[motion]\nvariance = [5, 0.1]\none = [7]\nsigma = 2\n", "s.toml");
-  put_numbers(table, "motion.variance", {1.0, 2.0});
-  put_numbers(table, "motion.one", {3.0});
-  put_numbers(table, "motion.sigma", {4.0});
-  put_numbers(table, "start.new.deep", {5.0});
-  EXPECT_EQ(numbers_at(table, "motion.variance", ""), (std::vector<double>{1.0, 2.0}));
-  EXPECT_TRUE(table.at_path("motion.one").is_array());
-  EXPECT_TRUE(table.at_path("motion.sigma").is_floating_point());
-  EXPECT_EQ(numbers_at(table, "start.new.deep", ""), std::vector<double>{5.0});
+  table = with_numbers(*table, "motion.variance", {1.0, 2.0});
+  table = with_numbers(*table, "motion.one", {3.0});
+  table = with_numbers(*table, "motion.sigma", {4.0});
+  table = with_numbers(*table, "start.new.deep", {5.0});
+  EXPECT_EQ(numbers_at(*table, "motion.variance", ""), (std::vector<double>{1.0, 2.0}));
+  EXPECT_TRUE(table->at_path("motion.one").is_array());
+  EXPECT_TRUE(table->at_path("motion.sigma").is_floating_point());
+  EXPECT_EQ(numbers_at(*table, "start.new.deep", ""), std::vector<double>{5.0});
 }
 
 }  // namespace

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <complex>
-#include <limits>
 #include <memory>
 #include <vector>
 
+#include "truebearing/core/constants.hpp"
 #include "truebearing/core/random.hpp"
 #include "truebearing/recording/recording.hpp"
 
@@ -15,7 +15,6 @@ namespace truebearing::testing {
 /// targets the second comes later.
 inline Recording array_recording() {
   constexpr std::size_t kSensors = 3, kSnapshots = 2, kIntervals = 4, kSize = kSensors * kSnapshots;
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   RandomStream random({.seed = 3}, StreamId::test);
   auto values = std::make_shared<std::vector<std::complex<double>>>(kIntervals * kSize);
   for (std::complex<double>& value : *values) value = {random.normal(), 1e-300 * random.normal()};

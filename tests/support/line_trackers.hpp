@@ -2,11 +2,11 @@
 #pragma once
 
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
 
+#include "truebearing/core/constants.hpp"
 #include "truebearing/core/random.hpp"
 #include "truebearing/core/state_space.hpp"
 #include "truebearing/filter/kalman.hpp"
@@ -17,9 +17,6 @@
 #include "truebearing/tracker/position_sensor.hpp"
 
 namespace truebearing::testing {
-
-inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 using RadarMotion = ConstantVelocity<1, FixedNoise<2>>;
 using RadarTracker = FilterTrackerOf<KalmanFilter<2>, RadarMotion, PositionSensor<1>>;

@@ -7,6 +7,7 @@
 #include "tests/support/allocation_count.hpp"
 #include "tests/support/angle_runs.hpp"
 #include "tests/support/angle_trackers.hpp"
+#include "truebearing/core/constants.hpp"
 #include "truebearing/core/covariance.hpp"
 
 namespace truebearing::angle_trackers_test {
@@ -22,8 +23,6 @@ using testing::Published;
 using testing::recording_of;
 using testing::scene_of;
 using testing::track;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 struct Kind {
   const char* name;

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/bearing_trackers.hpp"
+#include "truebearing/core/constants.hpp"
 #include "truebearing/core/covariance.hpp"
 
 namespace truebearing::bearing_tracker_test {
@@ -9,8 +10,6 @@ namespace {
 using testing::bearing_tracker;
 using testing::bearings_run;
 using testing::guessed_range;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 TEST(BearingSensor, TakesPositionAndDeviationFromTheMeasurement) {
   const BearingSensor sensor{0.02, 2.0};

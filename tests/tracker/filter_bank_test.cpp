@@ -4,13 +4,12 @@
 
 #include "tests/support/line_trackers.hpp"
 #include "tests/support/statistics.hpp"
+#include "truebearing/core/constants.hpp"
 #include "truebearing/core/covariance.hpp"
 
 namespace truebearing::filter_bank_test {
 namespace {
 
-using testing::kInfinity;
-using testing::kNaN;
 using testing::last_record;
 using testing::position;
 using testing::radar_bank;

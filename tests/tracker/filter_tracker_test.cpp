@@ -7,14 +7,13 @@
 
 #include "tests/support/line_trackers.hpp"
 #include "truebearing/core/chi_square.hpp"
+#include "truebearing/core/constants.hpp"
 #include "truebearing/core/covariance.hpp"
 #include "truebearing/tracker/bearing_sensor.hpp"
 
 namespace truebearing::filter_tracker_test {
 namespace {
 
-using testing::kInfinity;
-using testing::kNaN;
 using testing::last_record;
 using testing::position;
 using testing::radar_log;

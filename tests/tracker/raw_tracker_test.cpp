@@ -1,12 +1,12 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/line_trackers.hpp"
+#include "truebearing/core/constants.hpp"
 #include "truebearing/tracker/raw_tracker.hpp"
 
 namespace truebearing::raw_tracker_test {
 namespace {
 
-using testing::kNaN;
 using testing::position;
 
 RawTracker raw() {

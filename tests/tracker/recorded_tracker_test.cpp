@@ -6,10 +6,11 @@
 
 #include "tests/support/line_trackers.hpp"
 
+#include "truebearing/core/constants.hpp"
+
 namespace truebearing::recorded_tracker_test {
 namespace {
 
-using testing::kNaN;
 using testing::position;
 using testing::radar_log;
 using testing::RadarFilter;

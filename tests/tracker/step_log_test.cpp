@@ -8,13 +8,14 @@
 #include "tests/support/error_message.hpp"
 #include "tests/support/line_trackers.hpp"
 
+#include "truebearing/core/constants.hpp"
+
 namespace truebearing::step_log_test {
 namespace {
 
 using ::testing::AllOf;
 using testing::error_message;
 using ::testing::HasSubstr;
-using testing::kNaN;
 using testing::position;
 using testing::radar_log;
 using testing::RadarFilter;

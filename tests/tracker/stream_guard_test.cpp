@@ -1,13 +1,12 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/line_trackers.hpp"
+#include "truebearing/core/constants.hpp"
 #include "truebearing/tracker/stream_guard.hpp"
 
 namespace truebearing::stream_guard_test {
 namespace {
 
-using testing::kInfinity;
-using testing::kNaN;
 using testing::position;
 using Verdict = StreamGuard::Verdict;
 

@@ -10,13 +10,14 @@
 #include "tests/support/error_message.hpp"
 #include "tests/support/line_trackers.hpp"
 
+#include "truebearing/core/constants.hpp"
+
 namespace truebearing::teacher_test {
 namespace {
 
 using testing::error_message;
 using testing::FakeScenario;
 using ::testing::HasSubstr;
-using testing::kNaN;
 using testing::RadarFilter;
 
 Ensemble ensemble() {

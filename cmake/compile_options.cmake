@@ -12,6 +12,7 @@ function(truebearing_options target)
                            -fno-sanitize=null,alignment,object-size,vptr -fno-sanitize-recover=all
                                              -fno-omit-frame-pointer)
     target_link_options(${target} PUBLIC -fsanitize=${TRUEBEARING_SANITIZE})
+    target_compile_definitions(${target} PRIVATE TRUEBEARING_PRODUCTS_AS_LOOPS)  # filter/product.hpp
   endif()
 endfunction()
 

@@ -15,8 +15,13 @@ enum class Part { all, lower };
 namespace detail {
 
 /// Products of more multiplications than this are loops that the optimiser unrolls, as far as it finds that worth
-/// while: what is written out coefficient by coefficient takes the compiler longer with every one of them.
+/// while: what is written out coefficient by coefficient takes the compiler longer with every one of them. A build
+/// under the sanitizers, which add to every coefficient, has loops only.
+#ifdef TRUEBEARING_PRODUCTS_AS_LOOPS
+inline constexpr int kMostWrittenOut = 0;
+#else
 inline constexpr int kMostWrittenOut = 64;
+#endif
 
 /// body(0), ..., body(Count - 1), for a product of `multiplications`.
 template <int Count, int multiplications, typename Body>

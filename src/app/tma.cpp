@@ -142,7 +142,7 @@ std::vector<Eigen::Vector4d> hypotheses(const BearingWindow& window, const Doppl
 }
 
 // The times over which the source kept a level, outliers apart.
-void list_levels(const DopplerWindow& window, TmaAnswer::Source& source, const BatchEstimate& estimate) {
+void list_levels(const DopplerWindow& window, TmaSource& source, const BatchEstimate& estimate) {
   std::vector<SourceFrequency> sources;
   window.sources(estimate.x, estimate.time_s, sources);
   int current = -1;
@@ -182,7 +182,7 @@ void solve(Windows& windows, const TmaArguments& options, TmaAnswer& answer) {
     FrequencyChangeBatch with_frequencies(changes_of(options));
     answer.estimate = with_frequencies.solve(batch, bearings, windows.frequencies, prior);
     if (with_frequencies.used_frequencies()) used = &windows.frequencies;
-    TmaAnswer::Source& source = answer.source.emplace();
+    TmaSource& source = answer.source.emplace();
     source.used = used;
     source.sound_mps = options.sound_mps;
     source.looked_for = options.frequency_changes != "ignored";

@@ -101,7 +101,7 @@ std::string motion_table(const TmaAnswer& answer) {
   text += row("East m", "{:.0f}", x[0], sigmas[0], coordinate(0), known);
   text += row("North m", "{:.0f}", x[1], sigmas[1], coordinate(1), known);
   if (answer.source && !answer.source->levels.empty()) {
-    const TmaAnswer::Source::Level& last = answer.source->levels.back();
+    const TmaSource::Level& last = answer.source->levels.back();
     text += row("source Hz", "{:.3f}", last.frequency_hz, last.sigma_hz, true_frequency(answer), true);
   }
   if (!known) return text;
@@ -111,7 +111,7 @@ std::string motion_table(const TmaAnswer& answer) {
 }
 
 // A small jump of a tone sounds like a target that changes its velocity.
-std::string manoeuvre_instead(const TmaAnswer::Source& source) {
+std::string manoeuvre_instead(const TmaSource& source) {
   constexpr double kLikely_mps = 20.0;
   double least_mps = kLikely_mps;
   for (std::size_t i = 1; i < source.levels.size(); ++i) {
@@ -126,7 +126,7 @@ std::string manoeuvre_instead(const TmaAnswer::Source& source) {
 
 std::string source_lines(const TmaAnswer& answer) {
   if (!answer.source) return {};
-  const TmaAnswer::Source& source = *answer.source;
+  const TmaSource& source = *answer.source;
   std::string text = "\n";
   for (std::size_t i = 0; i < source.changes.size(); ++i)
     text += fmt::format("{} at {:g} s, to {:.3f} Hz\n",
@@ -139,17 +139,17 @@ std::string source_lines(const TmaAnswer& answer) {
   text += manoeuvre_instead(source);
   if (!source.used) text += "Because of that the frequencies were left out: the answer is from the bearings alone.\n";
   text += fmt::format("{:>10}{:>10}{:>14}{:>14}{:>14}\n", "from s", "to s", "source Hz", "std. dev.", "frequencies");
-  for (const TmaAnswer::Source::Level& level : source.levels)
+  for (const TmaSource::Level& level : source.levels)
     text += fmt::format("{:>10g}{:>10g}{:>14.3f}{:>14.4f}{:>14}\n", level.from_s, level.to_s, level.frequency_hz,
                         level.sigma_hz, level.count);
   if (source.outliers > 0) text += fmt::format("frequencies that fit none of these: {}\n", source.outliers);
   return text;
 }
 
-Json source_json(const TmaAnswer::Source& source, int missing) {
+Json source_json(const TmaSource& source, int missing) {
   Json json{{"used", source.used},         {"frequencies", source.frequencies}, {"missing", missing},
             {"outliers", source.outliers}, {"levels", Json::array()},           {"changes", Json::array()}};
-  for (const TmaAnswer::Source::Level& level : source.levels)
+  for (const TmaSource::Level& level : source.levels)
     json["levels"].push_back({{"from_s", level.from_s},
                               {"to_s", level.to_s},
                               {"frequency_hz", level.frequency_hz},

@@ -6,11 +6,27 @@
 #include <string>
 #include <vector>
 
+#include "truebearing/measurement/measurement.hpp"
 #include "truebearing/tma/frequency_changes.hpp"
 #include "truebearing/tma/residual_checks.hpp"
-#include "truebearing/measurement/measurement.hpp"
 
 namespace truebearing {
+
+/// What was measured of the source's tone.
+struct TmaSource {
+  struct Level {
+    double from_s, to_s;
+    std::size_t count;  ///< of its frequencies
+    double frequency_hz, sigma_hz;
+  };
+  bool used = false;        ///< false where the estimate is from the bearings alone
+  bool looked_for = false;  ///< changes of it
+  std::size_t frequencies = 0;
+  int outliers = 0;
+  std::vector<Level> levels;  ///< in order of time; a level may come back
+  double sound_mps = kSoundInWater_mps;
+  std::vector<FrequencyChange> changes;
+};
 
 struct TmaAnswer {
   std::string log;
@@ -24,21 +40,7 @@ struct TmaAnswer {
   std::optional<Observability> observability;  ///< of ml and map
   bool has_prior = false;
   int missing_frequencies = 0;
-  struct Source {
-    struct Level {
-      double from_s, to_s;
-      std::size_t count;  ///< of its frequencies
-      double frequency_hz, sigma_hz;
-    };
-    bool used = false;        ///< false where the estimate is from the bearings alone
-    bool looked_for = false;  ///< changes of it
-    std::size_t frequencies = 0;
-    int outliers = 0;
-    std::vector<Level> levels;  ///< in order of time; a level may come back
-    double sound_mps = kSoundInWater_mps;
-    std::vector<FrequencyChange> changes;
-  };
-  std::optional<Source> source;  ///< where frequencies were measured
+  std::optional<TmaSource> source;  ///< where frequencies were measured
 
   std::vector<Ambiguity> ambiguities;
   std::vector<Eigen::Vector4d> hypotheses;  ///< where the range is open: the state at each of some ranges

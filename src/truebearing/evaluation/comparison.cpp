@@ -4,6 +4,7 @@
 #include <chrono>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "truebearing/core/error.hpp"
 #include "truebearing/evaluation/batch_metrics.hpp"
@@ -125,9 +126,10 @@ Comparison compare(const TrackerSet& trackers, const std::vector<NamedScenario>&
   comparison.phases = sets.front().phases;
   if (sets.size() < 2) return comparison;
   for (std::size_t i = 0; i < sets.size(); ++i) {
-    comparison.sets.emplace_back(scenarios[i].name, summarise_sets(trackers, scorers, {&sets[i], 1}, options));
-    comparison.sets.back().second.time_s = sets[i].time_s;
-    comparison.sets.back().second.phases = sets[i].phases;
+    Comparison of_set = summarise_sets(trackers, scorers, {&sets[i], 1}, options);
+    of_set.time_s = sets[i].time_s;
+    of_set.phases = sets[i].phases;
+    comparison.sets.push_back({scenarios[i].name, std::move(of_set)});
   }
   return comparison;
 }

@@ -28,6 +28,8 @@ struct ComparisonOptions {
   Progress progress;
 };
 
+struct ComparisonOfSet;
+
 struct Comparison {
   std::string study;
   std::uint64_t seed = 0;
@@ -44,9 +46,14 @@ struct Comparison {
   std::optional<BoundSummary> cramer_rao;
   std::vector<AngleBoundSummary> angle_bounds;              ///< where the options ask for them
   std::vector<std::pair<std::string, double>> ns_per_step;  ///< by tracker; timings, the only figures that vary
-  std::vector<std::pair<std::string, Comparison>> sets;     ///< where there were several: each by itself
+  std::vector<ComparisonOfSet> sets;                        ///< where there were several: each by itself
 
   const TrackerSummary* tracker(const std::string& name) const;
+};
+
+struct ComparisonOfSet {
+  std::string name;
+  Comparison comparison;
 };
 
 struct NamedScenario {

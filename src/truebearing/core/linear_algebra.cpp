@@ -6,10 +6,21 @@
 #include <cmath>
 
 namespace truebearing {
+namespace {
+
+// Any size up to 4, without the heap: one of Eigen's decompositions to compile, where fixed sizes were several.
+template <int N>
+inline constexpr int kMost = N == Eigen::Dynamic ? N : 4;
+template <int N>
+using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMost<N>, kMost<N>>;
+template <int N>
+using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMost<N>, 1>;
+
+}  // namespace
 
 template <int N>
 SymmetricModes<N> symmetric_modes(const Eigen::Matrix<double, N, N>& A) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, N, N>> solver(A);
+  const Eigen::SelfAdjointEigenSolver<Small<N>> solver{Small<N>(A)};
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
@@ -55,7 +66,7 @@ Eigen::Matrix<double, N, N> inverse_of_positive(const Eigen::Matrix<double, N, N
 template <int N>
 Eigen::Matrix<double, N, 1> solve_semidefinite(const Eigen::Matrix<double, N, N>& A,
                                                const Eigen::Matrix<double, N, 1>& b) {
-  return A.ldlt().solve(b);
+  return Small<N>(A).ldlt().solve(SmallVector<N>(b));
 }
 
 RowMajorMatrix least_squares(const Eigen::MatrixXd& A, const RowMajorMatrix& B) {

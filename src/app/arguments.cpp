@@ -1,6 +1,8 @@
 #include "app/arguments.hpp"
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
 #include <utility>
 
 namespace truebearing {
@@ -35,34 +37,8 @@ Argument Argument::default_shown() const {
   return *this;
 }
 
-Argument Subcommand::argument(const std::string& names, std::string& value, const std::string& description) const {
-  return Argument{app_->add_option(names, value, description)};
-}
-
-Argument Subcommand::argument(const std::string& names, std::vector<std::string>& values,
-                              const std::string& description) const {
-  return Argument{app_->add_option(names, values, description)};
-}
-
-Argument Subcommand::argument(const std::string& names, int& value, const std::string& description) const {
-  return Argument{app_->add_option(names, value, description)};
-}
-
-Argument Subcommand::argument(const std::string& names, double& value, const std::string& description) const {
-  return Argument{app_->add_option(names, value, description)};
-}
-
-Argument Subcommand::argument(const std::string& names, std::uint64_t& value, const std::string& description) const {
-  return Argument{app_->add_option(names, value, description)};
-}
-
-Argument Subcommand::argument(const std::string& names, std::optional<int>& value,
-                              const std::string& description) const {
-  return Argument{app_->add_option(names, value, description)};
-}
-
-Argument Subcommand::argument(const std::string& names, std::optional<std::uint64_t>& value,
-                              const std::string& description) const {
+template <typename Value>
+Argument Subcommand::argument(const std::string& names, Value& value, const std::string& description) const {
   return Argument{app_->add_option(names, value, description)};
 }
 
@@ -77,5 +53,13 @@ void Subcommand::runs(std::function<void()> work) const {
 Subcommand Subcommands::add(const std::string& name, const std::string& description) const {
   return Subcommand{app_->add_subcommand(name, description)};
 }
+
+template Argument Subcommand::argument(const std::string&, std::string&, const std::string&) const;
+template Argument Subcommand::argument(const std::string&, std::vector<std::string>&, const std::string&) const;
+template Argument Subcommand::argument(const std::string&, int&, const std::string&) const;
+template Argument Subcommand::argument(const std::string&, double&, const std::string&) const;
+template Argument Subcommand::argument(const std::string&, std::uint64_t&, const std::string&) const;
+template Argument Subcommand::argument(const std::string&, std::optional<int>&, const std::string&) const;
+template Argument Subcommand::argument(const std::string&, std::optional<std::uint64_t>&, const std::string&) const;
 
 }  // namespace truebearing

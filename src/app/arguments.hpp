@@ -2,9 +2,7 @@
 // arguments.cpp alone.
 #pragma once
 
-#include <cstdint>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,15 +36,10 @@ class Subcommand {
  public:
   explicit Subcommand(CLI::App* app) : app_(app) {}
 
-  /// `names` is a position's name ("study"), or "--long" or "-s,--long" of an option.
-  Argument argument(const std::string& names, std::string& value, const std::string& description) const;
-  Argument argument(const std::string& names, std::vector<std::string>& values, const std::string& description) const;
-  Argument argument(const std::string& names, int& value, const std::string& description) const;
-  Argument argument(const std::string& names, double& value, const std::string& description) const;
-  Argument argument(const std::string& names, std::uint64_t& value, const std::string& description) const;
-  Argument argument(const std::string& names, std::optional<int>& value, const std::string& description) const;
-  Argument argument(const std::string& names, std::optional<std::uint64_t>& value,
-                    const std::string& description) const;
+  /// `names` is a position's name ("study"), or "--long" or "-s,--long" of an option. Of the types at the end of
+  /// arguments.cpp.
+  template <typename Value>
+  Argument argument(const std::string& names, Value& value, const std::string& description) const;
   /// An option without a value.
   Argument flag(const std::string& name, bool& value, const std::string& description) const;
   /// `work` throws InputError where the input is at fault.

@@ -1,6 +1,8 @@
 // truebearing compare STUDY.toml: the study's trackers on Monte Carlo runs, scored against the truth.
+#include <cstdint>
 #include <fmt/format.h>
 #include <memory>
+#include <optional>
 
 #include "app/output.hpp"
 #include "app/subcommands.hpp"

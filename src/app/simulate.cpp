@@ -1,5 +1,6 @@
 // truebearing simulate SCENARIO.toml --seed S --runs N -o DIR [--track FILE --track-id K --track-from S]:
 // measurement logs with truth.
+#include <cstdint>
 #include <filesystem>
 #include <fmt/format.h>
 #include <memory>

@@ -1,6 +1,8 @@
 // truebearing train STUDY.toml [-o MODEL]: teacher signals -> network -> model file.
+#include <cstdint>
 #include <fmt/format.h>
 #include <memory>
+#include <optional>
 
 #include "app/output.hpp"
 #include "app/subcommands.hpp"

@@ -1,6 +1,8 @@
 // truebearing tune STUDY.toml [-o FILE]: baseline parameters fitted to training draws.
+#include <cstdint>
 #include <fmt/format.h>
 #include <memory>
+#include <optional>
 
 #include "app/output.hpp"
 #include "app/subcommands.hpp"

@@ -18,11 +18,11 @@ namespace truebearing {
 namespace {
 
 // What is taught of the steps of one run: the numbers of a TeacherSet's rows (features, label, reference, the two
-// factors), one row after another.
+// factors, intervals), one row after another.
 using Rows = std::vector<double>;
 
 Eigen::Index row_size(Eigen::Index features, Eigen::Index state) {
-  return features + 2 * state + 2 * state * state;
+  return features + 2 * state + 2 * state * state + 3;
 }
 
 void append(const auto& values, Rows& rows) {
@@ -95,6 +95,8 @@ class RowMaker {
     append(units.output(step.reference->x - base.x), rows);
     append(BoundedMatrix(covariance.matrixL()), rows);
     append(BoundedMatrix(reference_covariance.matrixL()), rows);
+    const Intervals& intervals = track.extractor.intervals();
+    append(Eigen::Vector3d(intervals.shortest_s, intervals.longest_s, intervals.coast_s), rows);
   }
 
   Ensemble ensemble_;
@@ -149,13 +151,15 @@ TeacherSet collect_teacher_set(const Ensemble& ensemble, const CorrectionSpec& c
   if (total == 0)
     throw InputError("training", "no step of the training runs can be taught", "records, truth and finite features");
   TeacherSet set{correction.design.features, Eigen::MatrixXd(total, d),     Eigen::MatrixXd(total, n),
-                 Eigen::MatrixXd(total, n),  Eigen::MatrixXd(total, n * n), Eigen::MatrixXd(total, n * n)};
+                 Eigen::MatrixXd(total, n),  Eigen::MatrixXd(total, n * n), Eigen::MatrixXd(total, n * n),
+                 Eigen::MatrixXd(total, 3)};
   Eigen::Index next = 0;
   for (const Rows& rows : by_run) {
     const Eigen::Index count = static_cast<Eigen::Index>(rows.size()) / row_size(d, n);
     const Eigen::Map<const Eigen::MatrixXd> columns(rows.data(), row_size(d, n), count);  // a row to a column
     Eigen::Index part = 0;
-    for (Eigen::MatrixXd* matrix : {&set.X, &set.Y, &set.reference, &set.covariance_factors, &set.reference_factors}) {
+    for (Eigen::MatrixXd* matrix : {&set.X, &set.Y, &set.reference, &set.covariance_factors, &set.reference_factors,
+                                    &set.intervals}) {
       matrix->middleRows(next, count) = columns.middleRows(part, matrix->cols()).transpose();
       part += matrix->cols();
     }

@@ -26,6 +26,9 @@ struct TeacherSet {
   /// reference's.
   Eigen::MatrixXd covariance_factors;
   Eigen::MatrixXd reference_factors;
+  /// (N x 3): the shortest and the longest of the base's last intervals, NaN before it has one, and the time that it
+  /// has coasted; seconds.
+  Eigen::MatrixXd intervals;
 };
 
 /// |L^-1 e| per row, for errors e (N x n) and lower factors L (N x n n): their Mahalanobis lengths (N).

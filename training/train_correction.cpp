@@ -2,15 +2,18 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <fmt/format.h>
 #include <memory>
 #include <optional>
+#include <toml++/toml.h>
 #include <vector>
 
 #include "training/back_propagation.hpp"
 #include "training/covariance_inflation.hpp"
 #include "training/covariance_moments.hpp"
 #include "training/variable_projection.hpp"
+#include "truebearing/study/configuration_text.hpp"
 
 namespace truebearing {
 namespace {
@@ -84,6 +87,22 @@ BoxGate box_gate(const FuzzyTrainingData& data, const Eigen::VectorXd& disagreem
   return gate;
 }
 
+// The intervals of the training data. Those of a single period differ by rounding, which the edge forgives.
+IntervalBox interval_box(const Eigen::MatrixXd& intervals, double quantile) {
+  const auto known = [&](Eigen::Index column) {
+    std::vector<double> values;
+    for (const double value : intervals.col(column))
+      if (!std::isnan(value)) values.push_back(value);
+    return values;
+  };
+  IntervalBox box;
+  if (known(0).empty()) return box;  // no track has used two measurements
+  box.low_s = quantile_of(known(0), quantile);
+  box.high_s = quantile_of(known(1), 1.0 - quantile);
+  box.longest_coast_s = quantile_of(known(2), 1.0 - quantile);
+  return box;
+}
+
 Eigen::VectorXd disagreements(const TeacherSet& teacher, const Eigen::MatrixXd& corrections,
                               const CorrectionModel& model) {
   const Eigen::Index n = teacher.Y.cols();
@@ -98,6 +117,13 @@ Eigen::VectorXd disagreements(const TeacherSet& teacher, const Eigen::MatrixXd& 
                      model.head_covariance(phi, source * source.transpose()), reference * reference.transpose());
   }
   return values;
+}
+
+// The name of the file, the changes on one line.
+std::string provenance_of(const ChangedScenario& changed) {
+  const std::string file = changed.file.filename().string(), changes = configuration_text(*changed.changes);
+  if (changed.changes->empty()) return file;
+  return file.empty() ? changes : fmt::format("{} {}", file, changes);
 }
 
 }  // namespace
@@ -129,7 +155,8 @@ CorrectionModel train_correction(const Study& study, const std::string& name, co
   const Ensemble ensemble = study.make_ensemble(spec.design.members());
   const StateSpace& space = ensemble.tracker(ensemble.index(spec.design.base)).space();
   const TeacherOptions teacher_options{options.seed, Role::training, options.threads, options.teacher_progress};
-  const std::unique_ptr<Scenario> taught = spec.training.scenario ? load_scenario(*spec.training.scenario) : nullptr;
+  const std::unique_ptr<Scenario> taught =
+      spec.training.scenario ? study.scenario(*spec.training.scenario) : nullptr;
   const TeacherSet teacher = collect_teacher_set(ensemble, spec, taught ? *taught : study.scenario(), teacher_options);
   const FuzzyTrainingData data = training_data(teacher, spec, space);
   const auto begin = std::chrono::steady_clock::now();
@@ -145,13 +172,15 @@ CorrectionModel train_correction(const Study& study, const std::string& name, co
   // Covariance and gate from the wider family, where there is one.
   std::optional<TeacherSet> wider;
   if (spec.training.covariance_scenario)
-    wider = collect_teacher_set(ensemble, spec, *load_scenario(*spec.training.covariance_scenario), teacher_options);
+    wider = collect_teacher_set(ensemble, spec, *study.scenario(*spec.training.covariance_scenario),
+                                teacher_options);
   const TeacherSet& met = wider ? *wider : teacher;
   const Eigen::MatrixXd corrections = outputs(met, model.network);
   fit_covariance(met, corrections, spec, model);
   const bool trusts_another = spec.design.reference != spec.design.base;
   model.gate = box_gate(training_data(met, spec, space),
                         trusts_another ? disagreements(met, corrections, model) : Eigen::VectorXd(), spec.box);
+  model.gate->intervals = interval_box(met.intervals, spec.box.quantile);
   model.usage = trained.usage;
   model.local_mean = trained.local_mean;
   model.provenance = {{"study", study.name()},
@@ -160,8 +189,8 @@ CorrectionModel train_correction(const Study& study, const std::string& name, co
                       {"training_runs", fmt::format("{}", spec.training.runs)},
                       {"training_rows", fmt::format("{}", teacher.X.rows())},
                       {"bounds", describe(spec.bounds)}};
-  if (taught) model.provenance["scenario"] = spec.training.scenario->filename().string();
-  if (wider) model.provenance["covariance_scenario"] = spec.training.covariance_scenario->filename().string();
+  if (taught) model.provenance["scenario"] = provenance_of(*spec.training.scenario);
+  if (wider) model.provenance["covariance_scenario"] = provenance_of(*spec.training.covariance_scenario);
   model.validate();
   if (report) *report = {teacher.X.rows(), trained.cost, elapsed.count()};
   return model;

@@ -21,7 +21,9 @@ RandomStream stream(std::uint64_t run = 0) {
 
 Eigen::Matrix4Xd fly(const PlanarFlight& flight, double period_s, int samples, std::uint64_t run = 0) {
   RandomStream numbers = stream(run);
-  return flight.fly(period_s, samples, numbers).states;
+  std::vector<double> times_s;
+  for (int k = 0; k < samples; ++k) times_s.push_back(k * period_s);
+  return flight.fly(times_s, numbers).states;
 }
 
 /// Course changes between samples, clockwise.

@@ -1,7 +1,8 @@
 // The box gate: how far a step lies inside the box that the training data filled. The sides of the box are the
-// network's inputs, and the disagreement: the Mahalanobis distance between what the network wants and the reference,
-// under the sum of the two covariances. A target that the inputs alone do not give away shows there: the network
-// contradicts the trusted tracker as it never did in training. The worst side decides.
+// network's inputs; the intervals at which the base used measurements; and the disagreement: the Mahalanobis distance
+// between what the network wants and the reference, under the sum of the two covariances. A target that the inputs alone
+// do not give away shows there: the network contradicts the trusted tracker as it never did in training. The worst side
+// decides.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,6 +12,7 @@
 
 #include "truebearing/core/covariance.hpp"
 #include "truebearing/correction/fuzzy_network.hpp"
+#include "truebearing/correction/interval_memory.hpp"
 
 namespace truebearing {
 
@@ -20,6 +22,27 @@ inline double disagreement(const BoundedVector& d, const BoundedMatrix& P_a, con
   return std::sqrt(mahalanobis_squared(P_a + P_b, d));
 }
 
+/// The intervals that were taught, of the last few of a track (interval_memory.hpp) the shortest and the longest, and the
+/// longest time that its base coasted.
+struct IntervalBox {
+  double low_s = 0.0;
+  double high_s = std::numeric_limits<double>::infinity();
+  double longest_coast_s = std::numeric_limits<double>::infinity();
+
+  bool operator==(const IntervalBox&) const = default;
+
+  /// How far outside, in edge widths of a tenth of the interval; 0 inside, and before there is an interval.
+  double excess(const Intervals& found) const {
+    constexpr double kEdge = 0.1;
+    double worst = 0.0;
+    if (found.shortest_s < low_s) worst = std::log(low_s / found.shortest_s) / kEdge;
+    if (found.longest_s > high_s) worst = std::max(worst, std::log(found.longest_s / high_s) / kEdge);
+    if (found.coast_s > longest_coast_s)
+      worst = std::max(worst, (found.coast_s - longest_coast_s) / (kEdge * std::max(low_s, longest_coast_s)));
+    return worst;
+  }
+};
+
 struct BoxGate {
   Eigen::VectorXd low;         ///< (d), in the units of the features
   Eigen::VectorXd high;        ///< (d), low <= high
@@ -27,14 +50,15 @@ struct BoxGate {
   /// That passes, > 0. Infinity where the reference is the base itself, which a correction is meant to contradict.
   double largest_disagreement = std::numeric_limits<double>::infinity();
   double disagreement_edge_fraction = 0.05;  ///< the edge beyond it, as a share of it
+  IntervalBox intervals = {};
 
   bool operator==(const BoxGate&) const = default;
 
-  /// g in [0, 1] for inputs (d) and a disagreement: 1 inside the box, falling as exp(-excess^2 / 2) outside, the excess
-  /// measured in edge widths; 0 where a number is not finite.
-  double weight(const FuzzyNetwork::Inputs& inputs, double found_disagreement) const {
+  /// g in [0, 1] for inputs (d), intervals and a disagreement: 1 inside the box, falling as exp(-excess^2 / 2) outside,
+  /// the excess measured in edge widths; 0 where a number is not finite.
+  double weight(const FuzzyNetwork::Inputs& inputs, const Intervals& found_intervals, double found_disagreement) const {
     if (!inputs.allFinite()) return 0.0;
-    double worst = 0.0;
+    double worst = intervals.excess(found_intervals);
     if (std::isfinite(largest_disagreement)) {
       if (!std::isfinite(found_disagreement)) return 0.0;
       worst = std::max(found_disagreement - largest_disagreement, 0.0) /

@@ -79,30 +79,39 @@ void Correction::correct_record(const CorrectionInputs::Records& step, Track& tr
   begin_record(base, reference, corrected);
   corrected.correction->base_x = base.x;
   corrected.correction->base_P = base.P;
-  if (!features_.allFinite()) return;  // g = 0
+  if (!features_.allFinite() || !step.agree()) return;  // g = 0
 
   model_->network.strengths(features_, phi_);
   const OutputUnits units = inputs_.units(track.extractor, base);
-  const BoundedVector d = base.x + units.state(model_->network.output(phi_)) - reference.x;
+  const BoundedVector wanted = base.x + units.state(model_->network.output(phi_)) - reference.x;
   const BoundedMatrix P_c = units.in_frame(model_->head_covariance(phi_, units.in_frame(step.source->P)));
-  const Limited limited = limit_kappa(reference.P, d, bounds_.kappa);
+  const Limited limited = limit_kappa(reference.P, wanted, bounds_.kappa);
+  const BoundedVector& d = limited.d;
   const bool gated = bounds_.gate && model_->gate;
-  double g = gated ? model_->gate->weight(features_, disagreement(d, P_c, reference.P)) : 1.0;
-  if (bounds_.referee) {
-    g *= track.referee.weight(*bounds_.referee);
-    track.referee.predict(base.time_s, reference.x + limited.d, reference.x);
-  }
+  const double g = gated ? model_->gate->weight(features_, track.extractor.intervals(),
+                                                disagreement(wanted, P_c, reference.P))
+                         : 1.0;
+  const Referee::Weights w = bounds_.referee ? track.referee.weights(*bounds_.referee) : Referee::Weights{};
+  const Eigen::Index n = reference.x.size(), m = n / 2;
+  BoundedVector G(n);
+  G << BoundedVector::Constant(m, g * w.position), BoundedVector::Constant(n - m, g * w.velocity);
 
-  const BoundedVector x = reference.x + g * limited.d;
-  // Written as a change of P_reference: nothing to correct leaves the covariance as it is, to the bit.
-  const BoundedMatrix P =
-      reference.P + g * (P_c - reference.P) + g * (1.0 - g) * limited.d.lazyProduct(limited.d.transpose());
+  // Where its parts have weights of their own, a correction may become longer than it was.
+  const bool apart = w.position != w.velocity;
+  const BoundedVector weighted =
+      apart ? limit_kappa(reference.P, G.cwiseProduct(d), bounds_.kappa).d : BoundedVector(g * w.position * d);
+  const BoundedVector x = within_kappa(reference.x, reference.P, weighted, bounds_.kappa);
+  if (bounds_.referee && base.status == StepStatus::ok) track.referee.predict(reference.x + d, reference, x);
+
+  const BoundedVector A = G.cwiseSqrt(), B = (1.0 - G.array()).sqrt(), s = A.cwiseProduct(B).cwiseProduct(d);
+  const BoundedMatrix P = A.asDiagonal() * P_c * A.asDiagonal() + B.asDiagonal() * reference.P * B.asDiagonal() +
+                          s.lazyProduct(s.transpose());
   if (!x.allFinite() || !is_covariance(P)) return;  // numbers of any size may overflow or cancel: g = 0
   corrected.x = x;
   corrected.P = P;
-  corrected.correction->gate = g;
+  corrected.correction->gate = G.mean();
   corrected.correction->limited = limited.limited;
-  corrected.correction->distance_sigmas = g * limited.distance_sigmas;
+  corrected.correction->distance_sigmas = apart ? safe_distance(reference.P, weighted) : G[0] * limited.distance_sigmas;
 }
 
 }  // namespace truebearing

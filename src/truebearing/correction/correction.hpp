@@ -1,11 +1,12 @@
 // Correction: a function of the records of an ensemble,
 //
-//     x_corrected = x_reference + g limit_kappa(x_base + T' D network(features) - x_reference)
-//     P_corrected = g P_c + (1 - g) P_reference + g (1 - g) d d'
+//     x_corrected = x_reference + G d,  d = limit_kappa(x_base + T' D network(features) - x_reference)
+//     P_corrected = A P_c A + B P_reference B + s s',  A = G^(1/2), B = (1 - G)^(1/2), s = A B d
 //
-// with T the rotation into the correction's frame, D its output scale (1, or the base's standard deviations there), d
-// the limited difference of the two means, g the weight of box gate and referee, and P_c the covariance that the
-// model's covariance head gives (correction_model.hpp). It is open loop: nothing is written back into any tracker.
+// with T the rotation into the correction's frame, D its output scale (1, or the base's standard deviations there), P_c
+// the covariance that the model's covariance head gives (correction_model.hpp), and G = g diag(w) the weights of what
+// the network says: g of the box gate, w of the referee, one for positions and one for velocities. It is open loop:
+// nothing is written back into any tracker.
 #pragma once
 
 #include <memory>

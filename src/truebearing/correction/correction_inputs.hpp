@@ -46,6 +46,8 @@ class CorrectionInputs {
 
     /// Whether there is something to correct.
     bool complete() const { return base && reference && source && base->status != StepStatus::failed; }
+    /// Whether they did the same with the measurement: where one of them coasts alone, nothing was taught.
+    bool agree() const { return base->status == reference->status && base->status == source->status; }
   };
 
   /// Binds the design to the members of an ensemble by their names. `space`: of the state that is corrected. Throws

@@ -96,6 +96,7 @@ void FeatureExtractor::begin_track(const StepRecord& base) {
   log_first_range_ = log_range(base.x, base.sensor.value_or(SensorState{}));
   steps_ = 0.0;
   gain_.resize(0, 0);
+  interval_memory_.reset();
   for (Term& term : terms_) {
     term.memory = BoundedVector::Zero(1);
     term.used = 0.0;
@@ -105,6 +106,7 @@ void FeatureExtractor::begin_track(const StepRecord& base) {
 void FeatureExtractor::extract(const StepRecord& base, std::span<const StepRecord* const> companions,
                                Features& features) {
   if (base.track != track_) begin_track(base);
+  interval_memory_.take(base);
   if (base.status == StepStatus::ok) steps_ += 1.0;
   if (base.status == StepStatus::ok && base.gain) gain_ = *base.gain;
   rotation_ = FrameRotation(frame_, base.x, base.sensor);

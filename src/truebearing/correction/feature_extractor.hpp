@@ -9,6 +9,7 @@
 
 #include "truebearing/correction/feature.hpp"
 #include "truebearing/correction/fuzzy_network.hpp"
+#include "truebearing/correction/interval_memory.hpp"
 #include "truebearing/tracker/step_record.hpp"
 
 namespace truebearing {
@@ -35,6 +36,8 @@ class FeatureExtractor {
   /// between; a new track starts them afresh. A companion without a record gives NaN. No allocation.
   void extract(const StepRecord& base, std::span<const StepRecord* const> companions, Features& features);
   void reset();
+  /// Of the base's track, up to the last step.
+  const Intervals& intervals() const { return interval_memory_.intervals(); }
   /// The rotation into the frame for the base's estimate of the last step.
   const FrameRotation& rotation() const { return rotation_; }
 
@@ -63,6 +66,7 @@ class FeatureExtractor {
   FrameRotation rotation_;  // of this step
   BoundedVector sigma_;     // the base's standard deviations in the frame, where a feature wants them
   BoundedMatrix gain_;      // of the last used measurement
+  IntervalMemory interval_memory_;
   int track_ = -1;
   double began_s_ = 0.0;
   double log_first_range_ = 0.0;

@@ -213,7 +213,13 @@ CorrectionModel model_from(const Json& json, const std::string& name) {
   if (!file.at("gate").is_null()) {
     ObjectReader gate = file.object("gate");
     model.gate = BoxGate{gate.vector("low", d), gate.vector("high", d), gate.number("edge_fraction"),
-                         gate.number_or_none("largest_disagreement"), gate.number("disagreement_edge_fraction")};
+                         gate.number_or_none("largest_disagreement"), gate.number("disagreement_edge_fraction"), {}};
+    if (gate.has("intervals")) {  // not in models of before it was seen
+      ObjectReader intervals = gate.object("intervals");
+      model.gate->intervals = {intervals.number("low_s"), intervals.number("high_s"),
+                               intervals.number("longest_coast_s")};
+      intervals.finish();
+    }
     gate.finish();
   }
 
@@ -292,6 +298,10 @@ std::string model_text(const CorrectionModel& model) {
                     {"edge_fraction", model.gate->edge_fraction},
                     {"largest_disagreement", limit_json(model.gate->largest_disagreement)},
                     {"disagreement_edge_fraction", model.gate->disagreement_edge_fraction}};
+  if (model.gate && model.gate->intervals != IntervalBox{})
+    json["gate"]["intervals"] = {{"low_s", model.gate->intervals.low_s},
+                                 {"high_s", model.gate->intervals.high_s},
+                                 {"longest_coast_s", model.gate->intervals.longest_coast_s}};
   if (model.design.covariance_moments) json["covariance"] = kMoments;
   json["rules"] = OrderedJson::array();
   for (Eigen::Index j = 0; j < parameters.centres.rows(); ++j) {

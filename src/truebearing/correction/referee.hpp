@@ -1,12 +1,18 @@
 // The referee: which of two estimates has lately foretold the measurements better, the corrected one or the reference?
-// Both are carried one step ahead at constant velocity and compared with the measured position; the squared errors are
-// averaged over the recent past, and the corrected estimate loses its weight where its average is the larger one. It
-// needs no truth and sees what the box gate cannot: a network that was taught on the wrong family of targets.
+// Both are carried one and more steps ahead at constant velocity and compared with the measured positions. Positions and
+// velocities are judged apart, each with the other as it was published, so that neither can hide behind the other:
+//
+//     position, one step ahead:          |z - x - dt v_published|^2 / s^2
+//     velocity, one to kAhead steps:     |z - x_published - dt v|^2 / s^2,    s^2 what the reference claims
+//
+// These are averaged over the recent past, and the corrected estimate loses the weight of a part where its average is
+// the larger one. It needs no truth and sees what the box gate cannot: a network that was taught on the wrong family.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
+#include <cstddef>
 
 #include "truebearing/tracker/step_record.hpp"
 
@@ -22,45 +28,79 @@ struct RefereeOptions {
 
 class Referee {
  public:
-  /// Judges the last step's two predictions by the measured position in the base's record of this one. Call once per
-  /// step, before predict().
+  static constexpr std::size_t kAhead = 4;
+
+  /// g in [0, 1], of the first and of the second half of the state.
+  struct Weights {
+    double position = 1.0;
+    double velocity = 1.0;
+  };
+
+  /// Judges the predictions of the last steps by the measured position in the base's record of this one. Call once per
+  /// step, before predict(). A step that used no measurement leaves no trace.
   void judge(const StepRecord& base, const RefereeOptions& options) {
     if (base.status != StepStatus::ok || !base.innovation) return;
     const BoundedVector& z = base.innovation->z;
     const Eigen::Index m = base.x.size() / 2;
-    const double dt_s = base.time_s - time_s_;
-    if (z.size() != m || !(dt_s > 0.0)) return;
-    if (!started_)  // both begin with what the filter expects of an innovation
-      corrected_average_ = reference_average_ = base.innovation->S.diagonal().sum();
-    started_ = true;
-    if (corrected_x_.size() != 2 * m) return;
-    const auto squared_error = [&](const BoundedVector& x) { return (z - x.head(m) - dt_s * x.tail(m)).squaredNorm(); };
-    corrected_average_ += options.alpha * (squared_error(corrected_x_) - corrected_average_);
-    reference_average_ += options.alpha * (squared_error(reference_x_) - reference_average_);
+    if (z.size() != m) return;
+    for (std::size_t age = 0; age < count_; ++age) {
+      const Foretold& foretold = foretold_[age];
+      const double dt_s = base.time_s - foretold.time_s;
+      if (foretold.published.size() != 2 * m || !(dt_s > 0.0)) continue;
+      const double claimed = base.innovation->S.trace() + dt_s * dt_s * foretold.velocity_variance;
+      const auto squared_error = [&](const BoundedVector& position, const BoundedVector& velocity) {
+        return (z - position.head(m) - dt_s * velocity.tail(m)).squaredNorm() / claimed;
+      };
+      const auto take = [&](Averages& averages, double corrected, double reference, double share) {
+        averages.corrected += share * options.alpha * (corrected - averages.corrected);
+        averages.reference += share * options.alpha * (reference - averages.reference);
+        averages.started = true;
+      };
+      if (age == 0)
+        take(position_, squared_error(foretold.corrected, foretold.published),
+             squared_error(foretold.reference, foretold.published), 1.0);
+      take(velocity_, squared_error(foretold.published, foretold.corrected),
+           squared_error(foretold.published, foretold.reference), 1.0 / static_cast<double>(count_));
+    }
   }
 
-  /// What the next measurement will be held against: the corrected estimate, before any weight, and the reference's.
-  void predict(double time_s, const BoundedVector& corrected_x, const BoundedVector& reference_x) {
-    time_s_ = time_s;
-    corrected_x_ = corrected_x;
-    reference_x_ = reference_x;
+  /// What the next measurements will be held against, of a step that used one: the corrected estimate before any
+  /// weight, the reference's record, and what was published.
+  void predict(const BoundedVector& corrected, const StepRecord& reference, const BoundedVector& published) {
+    std::shift_right(foretold_.begin(), foretold_.end(), 1);
+    const Eigen::Index m = published.size() / 2;
+    foretold_.front() = {reference.time_s, corrected, reference.x, published, reference.P.diagonal().tail(m).sum()};
+    count_ = std::min(count_ + 1, kAhead);
   }
 
-  /// g in [0, 1].
-  double weight(const RefereeOptions& options) const {
-    if (!started_) return 1.0;
-    const double ratio = corrected_average_ / reference_average_;
+  Weights weights(const RefereeOptions& options) const { return {weight(position_, options), weight(velocity_, options)}; }
+
+ private:
+  // Of squared errors over their claims: both begin with what is expected.
+  struct Averages {
+    bool started = false;
+    double corrected = 1.0;
+    double reference = 1.0;
+  };
+  struct Foretold {
+    double time_s = 0.0;
+    BoundedVector corrected;
+    BoundedVector reference;
+    BoundedVector published;
+    double velocity_variance = 0.0;
+  };
+
+  static double weight(const Averages& averages, const RefereeOptions& options) {
+    if (!averages.started) return 1.0;
+    const double ratio = averages.corrected / averages.reference;
     const double weight = 1.0 / (1.0 + std::exp((ratio - options.tolerance) / options.edge));
     return std::isfinite(weight) ? weight : 0.0;
   }
 
- private:
-  bool started_ = false;
-  double time_s_ = std::numeric_limits<double>::quiet_NaN();
-  BoundedVector corrected_x_;
-  BoundedVector reference_x_;
-  double corrected_average_ = 0.0;
-  double reference_average_ = 0.0;
+  std::array<Foretold, kAhead> foretold_;  // the newest first
+  std::size_t count_ = 0;
+  Averages position_;
+  Averages velocity_;
 };
 
 }  // namespace truebearing

@@ -2,9 +2,12 @@
 
 #include <cmath>
 
+#include "truebearing/core/constants.hpp"
+
 namespace truebearing {
 
 Recording LineScenario::simulate(const RunKey& key) const {
+  constexpr double kRounding = 1e-9;  // of a gap that is one period long
   RandomStream scenario(key, StreamId::scenario);
   RandomStream process(key, StreamId::process);
   RandomStream measurement(key, StreamId::measurement);
@@ -15,19 +18,26 @@ Recording LineScenario::simulate(const RunKey& key) const {
   const double scale = parameters_.process_noise_scale.draw(scenario);
   const double noise = parameters_.noise.draw(scenario);
   const double sigma_m = parameters_.noise_is_variance ? std::sqrt(noise) : noise;
-  const Eigen::Vector2d process_sigma = (scale * parameters_.process_noise_variance).cwiseSqrt();
 
   Recording recording;
   recording.measured = measured()->components;
   recording.truth_space = &line_space();
   recording.truth.resize(1);
-  for (int k = 1; k <= parameters_.steps; ++k) {
-    x(0) += parameters_.period_s * x(1);
-    for (int i = 0; i < 2; ++i) x(i) += process_sigma(i) * process.normal();
+  double time_s = 0.0;
+  for (const Look& look : parameters_.looks.draw(parameters_.period_s, parameters_.steps, key)) {
+    const double dt_s = look.time_s - time_s;
+    time_s = look.time_s;
+    const double share = std::abs(dt_s / parameters_.period_s - 1.0) < kRounding ? 1.0 : dt_s / parameters_.period_s;
+    x(0) += share * parameters_.period_s * x(1);
+    const Eigen::Vector2d sigma = (scale * share * parameters_.process_noise_variance).cwiseSqrt();
+    for (int i = 0; i < 2; ++i) x(i) += sigma(i) * process.normal();
     Measurement taken;
-    taken.time_s = k * parameters_.period_s;
+    taken.time_s = time_s;
     taken.z = BoundedVector::Constant(1, x(0) + sigma_m * measurement.normal());
+    if (!look.seen) taken.z.setConstant(kNaN);
     if (parameters_.reported) taken.sigma = BoundedVector::Constant(1, sigma_m);
+    if (!parameters_.looks.keeps(look)) continue;
+    recording.counts.missing += !look.seen;
     recording.measurements.push_back(std::move(taken));
     recording.truth[0].x.emplace_back(x);
   }
@@ -57,6 +67,7 @@ std::unique_ptr<Scenario> read_line_scenario(TableReader& table) {
       read_distribution(sensor, parameters.noise_is_variance ? "position_variance_m2" : "position_sigma_m", kPositive);
   parameters.reported = sensor.boolean_or("reported", false);
   sensor.finish();
+  parameters.looks = read_look_schedule(table);
   return std::make_unique<LineScenario>(std::move(parameters));
 }
 

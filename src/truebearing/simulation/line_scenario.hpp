@@ -1,5 +1,6 @@
 // A target on a line at constant velocity, with white process noise, whose position a sensor measures once per period:
 //   x_k = F x_{k-1} + w_k, w_k ~ N(0, scale diag(process_noise_variance)),  z_k = position_k + v_k,  k = 1..steps.
+// Over gaps of another length (simulation/look_schedule.hpp) the variance of w grows with the time.
 // The radar of Lee et al.; the keys of kind = "line" are the fields below.
 #pragma once
 
@@ -8,6 +9,7 @@
 #include <utility>
 
 #include "truebearing/simulation/distribution.hpp"
+#include "truebearing/simulation/look_schedule.hpp"
 #include "truebearing/simulation/scenario.hpp"
 
 namespace truebearing {
@@ -22,6 +24,7 @@ struct LineParameters {
   Distribution noise = 1.0;        ///< [sensor] position_sigma_m, or
   bool noise_is_variance = false;  ///< position_variance_m2
   bool reported = false;           ///< [sensor] does a measurement carry its sigma?
+  LookSchedule looks;              ///< [looks]
 };
 
 class LineScenario final : public Scenario {

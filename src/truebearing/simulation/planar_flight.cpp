@@ -69,21 +69,26 @@ Eigen::Vector2d direction(double course_rad) {
 
 }  // namespace
 
-FlownTrack PlanarFlight::fly(double period_s, int samples, RandomStream& stream) const {
+FlownTrack PlanarFlight::fly(std::span<const double> times_s, RandomStream& stream) const {
   constexpr double kMaxSubStep_s = 0.1;
+  constexpr double kRounding = 1e-9;  // of times, in sub-steps
   double speed = speed_mps.draw(stream);
   double course_rad = stream.uniform(-kPi, kPi);
   Programme programme(*this, stream);
 
-  const int sub_steps = static_cast<int>(std::ceil(period_s / kMaxSubStep_s));
-  const double h = period_s / sub_steps;
+  const auto samples = static_cast<Eigen::Index>(times_s.size());
   FlownTrack track{Eigen::Matrix4Xd(4, samples), Eigen::VectorXd(samples)};
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
-  for (int k = 0; k < samples; ++k) {
+  for (Eigen::Index k = 0; k < samples; ++k) {
+    const double begin_s = times_s[static_cast<std::size_t>(k)];
     track.states.col(k) << position_m, speed * direction(course_rad);
-    track.since_manoeuvre_s[k] = programme.since_manoeuvre_s(k * period_s);
+    track.since_manoeuvre_s[k] = programme.since_manoeuvre_s(begin_s);
+    if (k + 1 == samples) break;
+    const double dt_s = times_s[static_cast<std::size_t>(k) + 1] - begin_s;
+    const int sub_steps = std::max(1, static_cast<int>(std::ceil(dt_s / kMaxSubStep_s - kRounding)));
+    const double h = dt_s / sub_steps;
     for (int i = 0; i < sub_steps; ++i) {
-      const Rates rates = programme.rates(k * period_s + (i + 0.5) * h);
+      const Rates rates = programme.rates(begin_s + (i + 0.5) * h);
       const double half_turn_rad = 0.5 * h * rates.turn_radps;
       const double next_speed = rates.acceleration_mps2 == 0.0
                                     ? speed

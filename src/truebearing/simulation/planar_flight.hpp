@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <span>
 
 #include "truebearing/core/random.hpp"
 #include "truebearing/simulation/distribution.hpp"
@@ -33,8 +34,8 @@ struct PlanarFlight {
   double highest_speed_mps = 1e9;
   double quiet_share = 0.0;  ///< probability that a flight has no manoeuvre
 
-  /// At 0, period, ..., (samples - 1) period, from the origin on a random course.
-  FlownTrack fly(double period_s, int samples, RandomStream& stream) const;
+  /// At times that ascend from 0, from the origin on a random course.
+  FlownTrack fly(std::span<const double> times_s, RandomStream& stream) const;
 };
 
 }  // namespace truebearing

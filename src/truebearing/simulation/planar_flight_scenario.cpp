@@ -1,10 +1,12 @@
 #include "truebearing/simulation/planar_flight_scenario.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <string>
 
 #include "truebearing/core/angle.hpp"
+#include "truebearing/core/constants.hpp"
 
 namespace truebearing {
 namespace {
@@ -44,18 +46,66 @@ const StateSpace& PlanarFlightScenario::truth_space() const {
   return parameters_.sensor.is_range() ? line_space() : plane_space();
 }
 
+// A recorder keeps its own time, once per period from a while before the first look to a while after the last; in between
+// its track is a straight line, wherever it is looked at.
+PlanarFlightScenario::SeenFlight PlanarFlightScenario::fly(const std::vector<Look>& looks, RandomStream& scenario,
+                                                           RandomStream& process) const {
+  constexpr double kRounding = 1e-9;  // of a look at the recorder's own time, in periods
+  const int margin = parameters_.jitter ? parameters_.jitter->margin() : 0;
+  const double period_s = parameters_.period_s;
+  const auto flight_time = [&](const Look& look) { return look.time_s - looks.front().time_s + margin * period_s; };
+
+  std::vector<double> kept_s;  // by the recorder
+  if (parameters_.jitter)
+    for (int k = 0; kept_s.empty() || kept_s.back() < flight_time(looks.back()) + (margin - kRounding) * period_s; ++k)
+      kept_s.push_back(k * period_s);
+  std::vector<double> times_s = kept_s;
+  for (const Look& look : looks) {
+    const double time_s = flight_time(look), nearest_s = std::round(time_s / period_s) * period_s;
+    if (!parameters_.jitter || std::abs(time_s - nearest_s) > kRounding * period_s) times_s.push_back(time_s);
+  }
+  std::sort(times_s.begin(), times_s.end());
+  times_s.push_back(times_s.back() + period_s);  // what is drawn after a flight comes after its last look's period
+  const FlownTrack track = parameters_.flight.fly(times_s, scenario);
+  const auto column = [&](double time_s) {  // of the time nearest to it
+    const auto after = std::lower_bound(times_s.begin(), times_s.end(), time_s - kRounding * period_s);
+    return static_cast<Eigen::Index>(after - times_s.begin());
+  };
+
+  const auto count = static_cast<Eigen::Index>(looks.size());
+  SeenFlight seen{Eigen::Matrix4Xd(4, count), Eigen::Matrix2Xd(2, count), Eigen::VectorXd(count)};
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const Eigen::Index at = column(flight_time(looks[static_cast<std::size_t>(k)]));
+    seen.flown.col(k) = track.states.col(at);
+    seen.since_manoeuvre_s[k] = track.since_manoeuvre_s[at];
+  }
+  seen.recorded_m = seen.flown.topRows<2>();
+  if (!parameters_.jitter) return seen;
+
+  Eigen::Matrix4Xd kept(4, static_cast<Eigen::Index>(kept_s.size()));
+  for (std::size_t k = 0; k < kept_s.size(); ++k)
+    kept.col(static_cast<Eigen::Index>(k)) = track.states.col(column(kept_s[k]));
+  const Eigen::Matrix2Xd recorded = parameters_.jitter->record(kept, process);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const double place = flight_time(looks[static_cast<std::size_t>(k)]) / period_s;
+    const double before = std::floor(place + kRounding), part = std::max(place - before, 0.0);
+    const auto at = static_cast<Eigen::Index>(before);
+    seen.recorded_m.col(k) = recorded.col(at);
+    if (part > kRounding) seen.recorded_m.col(k) += part * (recorded.col(at + 1) - recorded.col(at));
+  }
+  return seen;
+}
+
 Recording PlanarFlightScenario::simulate(const RunKey& key) const {
   RandomStream scenario(key, StreamId::scenario);
   RandomStream process(key, StreamId::process);
   RandomStream measurement(key, StreamId::measurement);
 
   const double sigma_m = parameters_.sensor.sigma_m.draw(scenario);
-  const int margin = parameters_.jitter ? parameters_.jitter->margin() : 0;
-  const FlownTrack whole = parameters_.flight.fly(parameters_.period_s, parameters_.steps + 2 * margin, scenario);
-  Eigen::Matrix4Xd flown = whole.states.middleCols(margin, parameters_.steps);
-  Eigen::Matrix2Xd recorded = flown.topRows<2>();
-  if (parameters_.jitter)
-    recorded = parameters_.jitter->record(whole.states, process).middleCols(margin, parameters_.steps);
+  const std::vector<Look> looks = parameters_.looks.draw(parameters_.period_s, parameters_.steps, key);
+  const SeenFlight seen = fly(looks, scenario, process);
+  Eigen::Matrix4Xd flown = seen.flown;
+  Eigen::Matrix2Xd recorded = seen.recorded_m;
 
   const Eigen::Vector2d site_m = std::visit(PlaceSite{flown, scenario}, parameters_.site);
   flown.topRows<2>().colwise() -= site_m;
@@ -66,19 +116,23 @@ Recording PlanarFlightScenario::simulate(const RunKey& key) const {
   recording.truth_space = &truth_space();
   recording.truth.resize(1);
   if (parameters_.quiet_after_s) recording.phases = {"manoeuvre", "quiet"};
-  for (int k = 0; k < parameters_.steps; ++k) {
+  for (std::size_t k = 0; k < looks.size(); ++k) {
+    const auto column = static_cast<Eigen::Index>(k);
     Eigen::Vector4d state;
-    state << recorded.col(k), flown.col(k).tail<2>();
-    recording.measurements.push_back(
-        parameters_.sensor.measure((k + 1) * parameters_.period_s, state, sigma_m, measurement));
+    state << recorded.col(column), flown.col(column).tail<2>();
+    Measurement taken = parameters_.sensor.measure(looks[k].time_s, state, sigma_m, measurement);
+    if (!parameters_.looks.keeps(looks[k])) continue;
+    if (!looks[k].seen) taken.z.setConstant(kNaN);
+    recording.counts.missing += !looks[k].seen;
+    recording.measurements.push_back(std::move(taken));
     BoundedVector x(truth_space().size());
     if (parameters_.sensor.is_range())
-      x = range_truth(recorded.col(k), flown.col(k));
+      x = range_truth(recorded.col(column), flown.col(column));
     else
       x = state;
     recording.truth[0].x.push_back(std::move(x));
     if (parameters_.quiet_after_s)
-      recording.truth[0].phase.push_back(whole.since_manoeuvre_s[margin + k] > *parameters_.quiet_after_s ? 1 : 0);
+      recording.truth[0].phase.push_back(seen.since_manoeuvre_s[column] > *parameters_.quiet_after_s ? 1 : 0);
   }
   return recording;
 }
@@ -148,6 +202,7 @@ std::unique_ptr<Scenario> read_planar_flight_scenario(TableReader& table) {
   parameters.site = read_site(table.table_if_present("site"), parameters.steps);
   if (std::optional<TableReader> jitter = table.table_if_present("jitter")) parameters.jitter = read_jitter(*jitter);
   parameters.sensor = read_planar_sensor(table.table("sensor"), output);
+  parameters.looks = read_look_schedule(table);
   return std::make_unique<PlanarFlightScenario>(std::move(parameters));
 }
 

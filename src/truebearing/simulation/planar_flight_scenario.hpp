@@ -12,7 +12,9 @@
 #include <optional>
 #include <utility>
 #include <variant>
+#include <vector>
 
+#include "truebearing/simulation/look_schedule.hpp"
 #include "truebearing/simulation/planar_flight.hpp"
 #include "truebearing/simulation/planar_sensor.hpp"
 #include "truebearing/simulation/recorder_jitter.hpp"
@@ -38,6 +40,7 @@ struct PlanarFlightParameters {
   std::variant<SiteAtStart, SiteBesideTrack, SiteAtRange> site;  ///< [site]
   std::optional<RecorderJitter> jitter;                          ///< [jitter]
   PlanarSensor sensor;                                           ///< [sensor]
+  LookSchedule looks;                                            ///< [looks]
   /// Where given, steps are told apart for the report: "quiet" longer than this after a manoeuvre, else "manoeuvre".
   std::optional<double> quiet_after_s;
 };
@@ -51,6 +54,14 @@ class PlanarFlightScenario final : public Scenario {
   bool reports_sigma() const override { return parameters_.sensor.reported; }
 
  private:
+  /// A flight at the looks, one to a column: as flown (4 x looks), and where it was recorded (2 x looks).
+  struct SeenFlight {
+    Eigen::Matrix4Xd flown;
+    Eigen::Matrix2Xd recorded_m;
+    Eigen::VectorXd since_manoeuvre_s;
+  };
+  SeenFlight fly(const std::vector<Look>& looks, RandomStream& scenario, RandomStream& process) const;
+
   PlanarFlightParameters parameters_;
 };
 

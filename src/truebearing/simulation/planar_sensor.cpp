@@ -68,7 +68,12 @@ Measurement PlanarSensor::measure(double time_s, const Eigen::Vector4d& state, d
                                   RandomStream& stream) const {
   Measurement taken;
   taken.time_s = time_s;
-  taken.z = output->h(state);
+  Eigen::Vector4d seen = state;
+  if (false_share > 0.0 && stream.uniform() < false_share) {
+    const double distance_m = false_radius_m * std::sqrt(stream.uniform()), course_rad = stream.uniform(-kPi, kPi);
+    seen.head<2>() += distance_m * Eigen::Vector2d(std::sin(course_rad), std::cos(course_rad));
+  }
+  taken.z = output->h(seen);
   BoundedVector sigma = BoundedVector::Constant(taken.z.size(), drawn_sigma_m);
   sigma.tail(further_sigma.size()) = further_sigma;
   BoundedVector noise(sigma.size());
@@ -108,6 +113,9 @@ PlanarSensor read_planar_sensor(TableReader table, const std::string& output) {
   }
   sensor.outlier_share = table.number_or("outlier_share", 0.0, {0.0, 1.0});
   sensor.outlier_factor = table.number_or("outlier_factor", 1.0, kPositive);
+  sensor.false_share = table.number_or("false_share", 0.0, {0.0, 1.0});
+  if (sensor.false_share > 0.0 || table.has("false_radius_m"))
+    sensor.false_radius_m = table.number("false_radius_m", kPositive);
   sensor.reported = table.boolean_or("reported", false);
   table.finish();
   return sensor;

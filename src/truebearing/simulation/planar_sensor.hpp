@@ -1,4 +1,4 @@
-// A sensor at the origin of the East-North plane, with Gaussian noise and, where asked for, outliers. What it can measure
+// A sensor at the origin of the East-North plane, with Gaussian noise and, where asked for, outliers and false plots. What it can measure
 // is one table, planar_outputs(). The table [sensor] of scenarios in the plane.
 #pragma once
 
@@ -35,6 +35,8 @@ struct PlanarSensor {
   BoundedVector further_sigma;          ///< of the components behind those of sigma_m: rad, m/s
   double outlier_share = 0.0;           ///< probability that a measurement's noise is
   double outlier_factor = 1.0;          ///< that many times as large
+  double false_share = 0.0;             ///< probability that a measurement is of nothing: of a place drawn evenly
+  double false_radius_m = 0.0;          ///< from the disc of that radius about the target
   bool reported = false;                ///< does a measurement carry its standard deviations?
 
   Measured measured() const { return output->measured; }

@@ -70,8 +70,8 @@ TrainingSpec read_training(TableReader& table) {
     limits->finish();
   }
   training.mirror = read_mirror(table);
-  if (table.has("scenario")) training.scenario = table.resolve(table.text("scenario"));
-  if (table.has("covariance_scenario")) training.covariance_scenario = table.resolve(table.text("covariance_scenario"));
+  if (table.has("scenario")) training.scenario = read_changed_scenario(table, "scenario");
+  if (table.has("covariance_scenario")) training.covariance_scenario = read_changed_scenario(table, "covariance_scenario");
   training.learning_rate = table.number_or("learning_rate", 0.05, {0.0, 1.0, true});
   if (method == "variable_projection") {
     training.rules = static_cast<int>(table.integer("rules", 1, 256));
@@ -109,6 +109,18 @@ void read_gate(TableReader& table, CorrectionSpec& spec) {
 }
 
 }  // namespace
+
+ChangedScenario read_changed_scenario(TableReader& table, const std::string& key) {
+  const toml::node* node = table.node(key);
+  if (!node || !node->is_table()) return {table.resolve(table.text(key)), std::make_shared<const toml::table>()};
+  TableReader reader = table.table(key);
+  ChangedScenario changed;
+  if (reader.has("scenario")) changed.file = reader.resolve(reader.text("scenario"));
+  toml::table changes = *reader.raw();
+  changes.erase("scenario");
+  changed.changes = std::make_shared<const toml::table>(std::move(changes));
+  return changed;
+}
 
 CorrectionSpec read_correction_spec(TableReader& table) {
   CorrectionSpec spec;

@@ -15,6 +15,16 @@
 
 namespace truebearing {
 
+/// A scenario made of another: that of a file, or the study's own where `file` is empty, but for the keys in `changes`;
+/// tables are merged key by key.
+struct ChangedScenario {
+  std::filesystem::path file;
+  SharedTable changes;
+};
+
+/// Reads the value of `key`: the name of a file, or a table of changes whose key `scenario`, where it has one, names it.
+ChangedScenario read_changed_scenario(TableReader& table, const std::string& key);
+
 /// How a correction network is trained.
 struct TrainingSpec {
   enum class Method {
@@ -41,9 +51,9 @@ struct TrainingSpec {
   int terms_per_input = 3;  ///< back-propagation
   int epochs = 300;
   double momentum = 0.0;
-  std::optional<std::filesystem::path> scenario;  ///< what is taught; the study's own where absent
+  std::optional<ChangedScenario> scenario;  ///< what is taught; the study's own where absent
   /// Where given, the covariance head and the box of the gate are fitted to this (wider) scenario instead.
-  std::optional<std::filesystem::path> covariance_scenario;
+  std::optional<ChangedScenario> covariance_scenario;
 };
 
 /// How the box of the gate is fitted, whether or not the study's gate uses it.

@@ -50,19 +50,19 @@ void Study::read(const SharedTable& table, const std::vector<std::string>& order
   reader.node("like");
   name_ = reader.text("name");
   const toml::node* scenario = reader.node("scenario");
-  if (scenario && scenario->is_table())
-    scenario_ = read_scenario(reader.table("scenario"), kMoreScenarios);
-  else
-    scenario_ = load_scenario(reader.resolve(reader.text("scenario")), kMoreScenarios);
+  const bool is_inside = scenario && scenario->is_table();
+  scenario_file_ = is_inside ? path_.string() : reader.resolve(reader.text("scenario")).string();
+  scenario_table_ = is_inside ? reader.table("scenario").raw() : read_toml_file(scenario_file_);
+  scenario_ = read_scenario(TableReader(scenario_table_, scenario_file_, is_inside ? "scenario" : ""), kMoreScenarios);
   if (auto recorded = reader.table_if_present("recorded")) recorded_ = read_recorded_spec(std::move(*recorded));
   if (auto sets = reader.table_if_present("sets"))
     for (const std::string& set : sets->keys()) {
-      const std::filesystem::path file = sets->resolve(sets->text(set));
-      if (file.extension() == ".csv") {
-        sets_.emplace_back(set, recorded_scenario(file));
+      const ChangedScenario changed = read_changed_scenario(*sets, set);
+      if (changed.file.extension() == ".csv") {
+        sets_.emplace_back(set, recorded_scenario(changed.file));
         continue;
       }
-      sets_.emplace_back(set, load_scenario(file, kMoreScenarios));
+      sets_.emplace_back(set, this->scenario(changed));
       if (sets_.back().second->truth_space() != scenario_->truth_space())
         throw sets->error(set, "has another truth than the study's scenario");
     }
@@ -96,6 +96,13 @@ std::vector<NamedScenario> Study::evaluation_scenarios() const {
     scenarios.push_back({name, scenario.get()});
   }
   return scenarios;
+}
+
+std::unique_ptr<Scenario> Study::scenario(const ChangedScenario& changed) const {
+  const SharedTable original = changed.file.empty() ? scenario_table_ : read_toml_file(changed.file);
+  const auto table = std::make_shared<const toml::table>(merged(*original, *changed.changes));
+  return read_scenario(TableReader(table, changed.file.empty() ? scenario_file_ : changed.file.string()),
+                       kMoreScenarios);
 }
 
 std::unique_ptr<Scenario> Study::recorded_scenario(const std::filesystem::path& file) const {

@@ -31,6 +31,8 @@ class Study {
   const std::filesystem::path& path() const { return path_; }
   /// What the trackers are tuned and trained on.
   const Scenario& scenario() const { return *scenario_; }
+  /// One that is made of it or of another, as its sets and what corrections are taught on may be. Throws InputError.
+  std::unique_ptr<Scenario> scenario(const ChangedScenario& changed) const;
   /// What they are compared on: the same, or the sets that the study names.
   std::vector<NamedScenario> evaluation_scenarios() const;
   /// A recorded track as a scenario: a measurement log with truth, or recorded positions that are measured as the
@@ -83,6 +85,8 @@ class Study {
   std::filesystem::path path_;
   std::string name_;
   std::unique_ptr<Scenario> scenario_;
+  SharedTable scenario_table_;
+  std::string scenario_file_;
   std::vector<std::pair<std::string, std::unique_ptr<Scenario>>> sets_;
   std::optional<RecordedSpec> recorded_;
   std::uint64_t seed_ = 1;

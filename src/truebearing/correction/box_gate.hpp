@@ -64,9 +64,11 @@ struct BoxGate {
       worst = std::max(found_disagreement - largest_disagreement, 0.0) /
               (disagreement_edge_fraction * largest_disagreement);
     }
+    constexpr double kLeastWidth = 1e-6;  // of an input that was always the same, up to rounding
     for (Eigen::Index i = 0; i < low.size(); ++i) {
       const double outside = std::max({low[i] - inputs[i], inputs[i] - high[i], 0.0});
-      if (outside > 0.0) worst = std::max(worst, outside / (edge_fraction * (high[i] - low[i])));
+      if (outside > 0.0)
+        worst = std::max(worst, outside / (edge_fraction * std::max(high[i] - low[i], kLeastWidth)));
     }
     return worst > 0.0 ? std::exp(-0.5 * worst * worst) : 1.0;
   }

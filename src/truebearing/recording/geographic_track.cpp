@@ -39,6 +39,7 @@ struct Target {
   std::vector<Fix> fixes;
   int repeated = 0;
   int glitches = 0;
+  int wrong_velocities = 0;
 };
 
 struct FixColumns {
@@ -68,22 +69,27 @@ FixColumns find_columns(const CsvReader& csv) {
   return columns;
 }
 
-double read_angle(const CsvReader& csv, std::size_t column, double low, double high) {
+// `none`: what a transponder sends that does not know it.
+double read_angle(const CsvReader& csv, std::size_t column, double low, double high, double none) {
   const double angle_deg = csv.number(column);
+  if (angle_deg == none) return kNaN;
   if (angle_deg < low || angle_deg > high)
     throw csv.error(column, fmt::format("is {}", angle_deg), fmt::format("degrees in [{}, {}]", low, high));
   return angle_deg;
 }
 
 Fix read_fix(const CsvReader& csv, const FixColumns& columns) {
-  Fix fix{csv.number(columns.time), read_angle(csv, columns.latitude, -90.0, 90.0),
-          read_angle(csv, columns.longitude, -180.0, 360.0)};
+  // ITU-R M.1371: latitude 91, longitude 181, 102.3 knots, course 360 are not available.
+  constexpr double kNoLatitude_deg = 91.0, kNoLongitude_deg = 181.0, kNoSpeed_kn = 102.3, kNoCourse_deg = 360.0;
+  Fix fix{csv.number(columns.time), read_angle(csv, columns.latitude, -90.0, 90.0, kNoLatitude_deg),
+          read_angle(csv, columns.longitude, -180.0, 360.0, kNoLongitude_deg)};
   if (std::isnan(fix.time_s)) throw csv.error(columns.time, "is missing or infinite", "a finite time");
   if (columns.speed >= 0) {
     constexpr double kKnot_mps = 1852.0 / 3600.0;
-    const double course_rad = radians(csv.number(static_cast<std::size_t>(columns.course)));
-    fix.velocity_mps = kKnot_mps * csv.number(static_cast<std::size_t>(columns.speed)) *
-                       Eigen::Vector2d(std::sin(course_rad), std::cos(course_rad));
+    const double course_deg = csv.number(static_cast<std::size_t>(columns.course));
+    const double speed_kn = csv.number(static_cast<std::size_t>(columns.speed)), course_rad = radians(course_deg);
+    if (speed_kn != kNoSpeed_kn || course_deg != kNoCourse_deg)
+      fix.velocity_mps = kKnot_mps * speed_kn * Eigen::Vector2d(std::sin(course_rad), std::cos(course_rad));
   }
   if (std::isnan(fix.latitude_deg) || std::isnan(fix.longitude_deg)) fix.latitude_deg = fix.longitude_deg = kNaN;
   return fix;
@@ -128,18 +134,57 @@ Eigen::Vector3d geocentric(const Fix& fix) {
   return position_m;
 }
 
-// Takes out the fixes that no target could have reached in time. The further away the last one kept, the more is
-// believed, so that a wrong first position does not lock out the rest.
+// Fixes of one target that it could have reached one from another.
+struct Chain {
+  Eigen::Vector3d position_m;  // of the last one
+  double since_s;              // when it was first there: receivers repeat a position until they have another
+  int length = 0;
+};
+
+// Takes out the fixes that no target could have reached in time: all but those of the longest chain, so that a wrong
+// position, be it the first, does not lock out the good ones. A fix goes on with the longest chain that it could.
 void remove_glitches(Target& target, double max_speed_mps) {
-  const Fix* kept = nullptr;
-  for (Fix& fix : target.fixes) {
+  constexpr std::size_t kMostChains = 8;  // the shortest gives way
+  const auto is_shorter = [](const auto& a, const auto& b) { return a.second.length < b.second.length; };
+  std::vector<std::pair<int, Chain>> chains;  // with their numbers
+  std::vector<int> chain_of(target.fixes.size(), -1);
+  int begun = 0;
+  for (std::size_t k = 0; k < target.fixes.size(); ++k) {
+    const Fix& fix = target.fixes[k];
     if (fix.is_missing()) continue;
-    if (kept && (geocentric(fix) - geocentric(*kept)).norm() > max_speed_mps * (fix.time_s - kept->time_s)) {
-      fix.latitude_deg = fix.longitude_deg = kNaN;
-      ++target.glitches;
-      continue;
+    const Eigen::Vector3d position_m = geocentric(fix);
+    std::pair<int, Chain>* longest = nullptr;
+    for (auto& chain : chains) {
+      const double reach_m = max_speed_mps * (fix.time_s - chain.second.since_s);
+      const bool is_reached = (position_m - chain.second.position_m).norm() <= reach_m;
+      if (is_reached && (!longest || is_shorter(*longest, chain))) longest = &chain;
     }
-    kept = &fix;
+    if (!longest) {
+      if (chains.size() == kMostChains) chains.erase(std::min_element(chains.begin(), chains.end(), is_shorter));
+      longest = &chains.emplace_back(begun++, Chain{position_m, fix.time_s});
+    }
+    Chain& chain = longest->second;
+    if (position_m != chain.position_m) chain.since_s = fix.time_s;
+    chain.position_m = position_m;
+    ++chain.length;
+    chain_of[k] = longest->first;
+  }
+  if (chains.empty()) return;
+  const int kept = std::max_element(chains.begin(), chains.end(), is_shorter)->first;
+  for (std::size_t k = 0; k < target.fixes.size(); ++k) {
+    Fix& fix = target.fixes[k];
+    if (fix.is_missing() || chain_of[k] == kept) continue;
+    fix.latitude_deg = fix.longitude_deg = kNaN;
+    ++target.glitches;
+  }
+}
+
+// Takes out the velocities that no target has.
+void remove_wrong_velocities(Target& target, double max_speed_mps) {
+  for (Fix& fix : target.fixes) {
+    if (!(fix.velocity_mps.norm() > max_speed_mps)) continue;
+    fix.velocity_mps.setConstant(kNaN);
+    ++target.wrong_velocities;
   }
 }
 
@@ -218,6 +263,7 @@ Recording make_recording(const Target& target, const GeographicTrackOptions& opt
   }
   recording.counts.repeated = target.repeated;
   recording.counts.glitches = target.glitches;
+  if (options.recorded_velocity) recording.counts.wrong_velocities = target.wrong_velocities;
   complete_truth(target, options, recording.truth[0].x);
   return recording;
 }
@@ -227,7 +273,8 @@ GeographicTracks read_tracks(CsvReader csv, const GeographicTrackOptions& option
   GeographicTrackOptions believed = options;
   believed.recorded_velocity &= find_columns(csv).speed >= 0;
   for (Target& target : read_targets(csv)) {
-    remove_glitches(target, options.max_speed_mps);
+    if (std::isfinite(options.max_speed_mps)) remove_glitches(target, options.max_speed_mps);
+    remove_wrong_velocities(target, options.max_speed_mps);
     const auto usable =
         std::count_if(target.fixes.begin(), target.fixes.end(), [](const Fix& fix) { return !fix.is_missing(); });
     if (usable < kFewestRows)

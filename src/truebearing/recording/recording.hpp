@@ -41,6 +41,7 @@ struct Recording {
     int missing = 0;   ///< rows without a usable measurement
     int repeated = 0;  ///< rows identical to the one before, dropped
     int glitches = 0;  ///< of the missing, those whose position implied an impossible speed
+    int wrong_velocities = 0;  ///< rows that say an impossible velocity, which is not believed
   } counts;
 
   /// Owns the values of the measurements' snapshots; nothing where there are none.

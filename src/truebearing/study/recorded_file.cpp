@@ -20,12 +20,16 @@ std::string note_of(const std::string& file, const GeographicTracks& tracks) {
     sum.missing += recording.counts.missing;
     sum.glitches += recording.counts.glitches;
     sum.repeated += recording.counts.repeated;
+    sum.wrong_velocities += recording.counts.wrong_velocities;
   }
   const std::string left_out =
       tracks.left_out == 0 ? ""
                            : fmt::format(" ({} left out with fewer than {} usable rows)", tracks.left_out, kFewestRows);
-  return fmt::format("{}: tracks: {}{}; {} measurements, {} missing, {} of them glitches, {} repeated rows dropped",
-                     file, tracks.recordings.size(), left_out, rows, sum.missing, sum.glitches, sum.repeated);
+  const std::string wrong_velocities =
+      sum.wrong_velocities == 0 ? "" : fmt::format(", {} impossible velocities", sum.wrong_velocities);
+  return fmt::format("{}: tracks: {}{}; {} measurements, {} missing, {} of them glitches, {} repeated rows dropped{}",
+                     file, tracks.recordings.size(), left_out, rows, sum.missing, sum.glitches, sum.repeated,
+                     wrong_velocities);
 }
 
 }  // namespace

@@ -77,7 +77,9 @@ struct CovarianceForm {
       least(i) = kLeastPivot * t + std::numeric_limits<Scalar>::min();
     }
     const Ldlt<M, Scalar> factors(update.S, least);
-    for (int i = 0; i < N; ++i) update.K.row(i) = factors.solve(PHt.row(i).transpose()).transpose();
+    detail::each<N, N * M * M>([&](int i) __attribute__((always_inline)) {
+      update.K.row(i) = factors.solve(PHt.row(i).transpose()).transpose();
+    });
     update.nis = update.nu.dot(factors.solve(update.nu));
     return factors.valid & is_positive_semidefinite<M, Scalar>(R);
   }

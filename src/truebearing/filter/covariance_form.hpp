@@ -50,10 +50,10 @@ struct CovarianceForm {
     return is_positive_semidefinite<N, Scalar>(P);
   }
 
-  /// predict() across a motion whose type is not known here. x becomes f(x).
+  /// predict() across a motion whose type is not known here. x becomes f(x); `failed` leaves both as they were.
   template <int N>
-  static bool across(const SizedMotion<N>& motion, double dt_s, Eigen::Matrix<double, N, 1>& x,
-                     Eigen::Matrix<double, N, N>& P) {
+  static StepStatus across(const SizedMotion<N>& motion, double dt_s, Eigen::Matrix<double, N, 1>& x,
+                           Eigen::Matrix<double, N, N>& P) {
     return motion.carry(dt_s, x, P);
   }
 

@@ -71,10 +71,7 @@ class UnscentedKalmanFilter {
   /// The same across a motion whose type is not known here.
   StepStatus predict(const SizedMotion<N>& motion, double dt_s) requires std::is_same_v<Scalar, double> {
     if (!motion.is_linear()) return predict<SizedMotion<N>>(motion, dt_s);
-    State x = x_;
-    Covariance P = P_;
-    const bool valid = motion.carry(dt_s, x, P);
-    return commit(valid, x, P);
+    return motion.carry(dt_s, x_, P_);
   }
 
   /// Takes one measurement z (m), over points drawn anew from P. `failed` leaves x and P as they were: z, R or the

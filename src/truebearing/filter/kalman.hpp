@@ -38,7 +38,7 @@ class KalmanFilter {
   template <LinearMotionModel Motion>
   EIGEN_ALWAYS_INLINE StepStatus predict(const Motion& motion, Scalar dt_s) {
     static_assert(Motion::kStates == N && std::is_same_v<typename Motion::Scalar, Scalar>);
-    const Covariance F = motion.F(dt_s);
+    const Covariance& F = motion.F(dt_s);
     const State x = product(F, x_);
     Covariance carried = carried_;
     const bool valid = Form::template predict<N, Scalar>(F, motion.Q(dt_s), carried);

@@ -188,7 +188,7 @@ StepStatus FilterTracker::update(const Measurement& measurement) {
     predict_again();
     return StepStatus::failed;
   }
-  innovation.z = taken.value();
+  with_length(taken, [&](const auto& sized) { innovation.z = sized.z; });
   if (!gate_.passes(innovation.nis)) {
     ++guard_.counts.gated;
     record_.gain.reset();

@@ -24,10 +24,6 @@ namespace detail {
 template <int N, int M>
 inline constexpr bool kHasPositionForm = M == (N <= 3 ? 1 : 2) && N <= 6;
 
-}  // namespace detail
-
-namespace detail {
-
 template <typename Filter, int M>
 [[gnu::noinline]] Update<Filter::kStates, M> update_by_any(Filter& filter, const SizedMeasurement<M>& measurement) {
   constexpr int N = Filter::kStates;

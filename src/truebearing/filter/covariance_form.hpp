@@ -77,9 +77,10 @@ struct CovarianceForm {
       least(i) = kLeastPivot * t + std::numeric_limits<Scalar>::min();
     }
     const Ldlt<M, Scalar> factors(update.S, least);
-    detail::each<N, N * M * M>([&](int i) __attribute__((always_inline)) {
-      update.K.row(i) = factors.solve(PHt.row(i).transpose()).transpose();
-    });
+    if constexpr (M == 1)  // written out: as a loop, PHt would go through memory
+      detail::each<N, N>([&](int i) __attribute__((always_inline)) { update.K(i) = factors.inverse_D(0) * PHt(i); });
+    else
+      for (int i = 0; i < N; ++i) update.K.row(i) = factors.solve(PHt.row(i).transpose()).transpose();
     update.nis = update.nu.dot(factors.solve(update.nu));
     return factors.valid & is_positive_semidefinite<M, Scalar>(R);
   }

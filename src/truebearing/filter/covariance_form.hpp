@@ -50,10 +50,10 @@ struct CovarianceForm {
     return is_positive_semidefinite<N, Scalar>(P);
   }
 
-  /// predict() across a motion whose type is not known here. x becomes f(x).
+  /// predict() across a motion whose type is not known here. x becomes f(x); `failed` leaves both as they were.
   template <int N>
-  static bool across(const SizedMotion<N>& motion, double dt_s, Eigen::Matrix<double, N, 1>& x,
-                     Eigen::Matrix<double, N, N>& P) {
+  static StepStatus across(const SizedMotion<N>& motion, double dt_s, Eigen::Matrix<double, N, 1>& x,
+                           Eigen::Matrix<double, N, N>& P) {
     return motion.carry(dt_s, x, P);
   }
 
@@ -77,7 +77,10 @@ struct CovarianceForm {
       least(i) = kLeastPivot * t + std::numeric_limits<Scalar>::min();
     }
     const Ldlt<M, Scalar> factors(update.S, least);
-    for (int i = 0; i < N; ++i) update.K.row(i) = factors.solve(PHt.row(i).transpose()).transpose();
+    if constexpr (M == 1)  // written out: as a loop, PHt would go through memory
+      detail::each<N, N>([&](int i) __attribute__((always_inline)) { update.K(i) = factors.inverse_D(0) * PHt(i); });
+    else
+      for (int i = 0; i < N; ++i) update.K.row(i) = factors.solve(PHt.row(i).transpose()).transpose();
     update.nis = update.nu.dot(factors.solve(update.nu));
     return factors.valid & is_positive_semidefinite<M, Scalar>(R);
   }

@@ -33,13 +33,16 @@ class ErasedMotion final : public SizedMotion<Model::kStates> {
   Matrix F(const State& x, double dt_s) const override { return jacobian(x, dt_s); }
   Matrix Q(double dt_s) const override { return model_.Q(dt_s); }
 
-  bool carry(double dt_s, State& x, Matrix& P) const override {
+  StepStatus carry(double dt_s, State& x, Matrix& P) const override {
     const Matrix F = jacobian(x, dt_s);
+    State new_x;
     if constexpr (LinearMotionModel<Model>)
-      x = product(F, State(x));
+      new_x = product(F, x);
     else
-      x = model_.f(State(x), dt_s);
-    return detail::CovarianceForm::predict<N, double>(F, model_.Q(dt_s), P);
+      new_x = model_.f(x, dt_s);
+    Matrix new_P = P;
+    const bool valid = detail::CovarianceForm::predict<N, double>(F, model_.Q(dt_s), new_P);
+    return commit(valid, new_x, new_P, x, P);
   }
 
  private:

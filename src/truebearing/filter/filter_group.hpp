@@ -26,9 +26,10 @@ class FilterGroup {
   virtual bool begin(std::size_t i, const double* x, const double* P) = 0;
   /// All cross dt_s seconds. False where one failed: then some have crossed and some have not.
   virtual bool predict(double dt_s) = 0;
-  /// Member i takes measurements[i]; gained[i] becomes the log likelihood of its innovation, up to the power of 2 pi
-  /// that all share, and minus infinity where it failed.
-  virtual void update(std::span<const AnyMeasurement* const> measurements, std::span<double> gained) = 0;
+  /// Member i takes measurements[taken[i]]; gained[i] becomes the log likelihood of its innovation, up to the power of
+  /// 2 pi that all share, and minus infinity where it failed.
+  virtual void update(std::span<const AnyMeasurement* const> measurements, std::span<const std::size_t> taken,
+                      std::span<double> gained) = 0;
   /// x = sum w_i x_i / sum w, P = sum w_i / sum w (P_i + (x_i - x)(x_i - x)'), over the members with a weight.
   virtual void mix(std::span<const double> weights, double sum, BoundedVector& x, BoundedMatrix& P) const = 0;
   /// Becomes a copy of `other`, which was made by fresh() from this one or from the same.
@@ -81,7 +82,7 @@ class FilterGroupOf final : public FilterGroup {
     for (std::size_t m = 0; m < motions_.size(); ++m)
       if (motions_[m]->is_linear()) transitions_[m] = {motions_[m]->F(State::Zero(), dt_s), motions_[m]->Q(dt_s)};
     bool valid = true;
-    for (std::size_t i = 0; i < members_.size(); ++i) {
+    for (std::size_t i = 0; i < motion_of_.size(); ++i) {
       const std::size_t m = motion_of_[i];
       if (motions_[m]->is_linear())
         valid &= members_[i].predict(transitions_[m], dt_s) != StepStatus::failed;
@@ -91,17 +92,18 @@ class FilterGroupOf final : public FilterGroup {
     return valid;
   }
 
-  void update(std::span<const AnyMeasurement* const> measurements, std::span<double> gained) override {
-    for (std::size_t i = 0; i < members_.size(); ++i)
-      gained[i] = with_length(*measurements[i], [&](const auto& sized) { return take(members_[i], sized); });
+  void update(std::span<const AnyMeasurement* const> measurements, std::span<const std::size_t> taken,
+              std::span<double> gained) override {
+    for (std::size_t i = 0; i < gained.size(); ++i)
+      gained[i] = with_length(*measurements[taken[i]], [&](const auto& sized) { return take(members_[i], sized); });
   }
 
   void mix(std::span<const double> weights, double sum, BoundedVector& x, BoundedMatrix& P) const override {
     State mean = State::Zero();
     Covariance spread = Covariance::Zero();
-    for (std::size_t i = 0; i < members_.size(); ++i) mean += weights[i] * members_[i].x();
+    for (std::size_t i = 0; i < weights.size(); ++i) mean += weights[i] * members_[i].x();
     mean /= sum;
-    for (std::size_t i = 0; i < members_.size(); ++i) {
+    for (std::size_t i = 0; i < weights.size(); ++i) {
       if (weights[i] == 0.0) continue;  // it may be so far off that its spread is not finite
       const State d = members_[i].x() - mean;
       spread += weights[i] / sum * (members_[i].P() + d * d.transpose());

@@ -24,19 +24,10 @@ namespace detail {
 template <int N, int M>
 inline constexpr bool kHasPositionForm = M == (N <= 3 ? 1 : 2) && N <= 6;
 
-}  // namespace detail
-
-/// A filter's update with a measurement whose model is not known here.
 template <typename Filter, int M>
-Update<Filter::kStates, M> update_by(Filter& filter, const SizedMeasurement<M>& measurement) {
+[[gnu::noinline]] Update<Filter::kStates, M> update_by_any(Filter& filter, const SizedMeasurement<M>& measurement) {
   constexpr int N = Filter::kStates;
   if constexpr (requires { filter.update(MeasurementOn<N, M>{measurement}, measurement.z); }) {
-    // Of a measured position the compiler knows H = [I, 0].
-    if constexpr (detail::kHasPositionForm<N, M>) {
-      const auto position = on_state<N>(CartesianPosition<M>{measurement.R});
-      if constexpr (requires { filter.update(position, measurement.z); })
-        if (measurement.is_position()) return filter.update(position, measurement.z);
-    }
     return filter.update(MeasurementOn<N, M>{measurement}, measurement.z);
   } else {
     if constexpr (M == 1)  // a filter of bearings alone, which asks for more than h and H
@@ -45,6 +36,20 @@ Update<Filter::kStates, M> update_by(Filter& filter, const SizedMeasurement<M>& 
     return {Eigen::Matrix<double, M, 1>::Constant(kNaN), Eigen::Matrix<double, M, M>::Constant(kNaN),
             Eigen::Matrix<double, N, M>::Constant(kNaN), kNaN, StepStatus::failed};
   }
+}
+
+}  // namespace detail
+
+/// A filter's update with a measurement whose model is not known here; but of a measured position the compiler knows
+/// H = [I, 0].
+template <typename Filter, int M>
+EIGEN_ALWAYS_INLINE Update<Filter::kStates, M> update_by(Filter& filter, const SizedMeasurement<M>& measurement) {
+  if constexpr (detail::kHasPositionForm<Filter::kStates, M>) {
+    const auto position = on_state<Filter::kStates>(CartesianPosition<M>{measurement.R});
+    if constexpr (requires { filter.update(position, measurement.z); })
+      if (measurement.is_position()) return filter.update(position, measurement.z);
+  }
+  return detail::update_by_any(filter, measurement);
 }
 
 template <typename FilterType>

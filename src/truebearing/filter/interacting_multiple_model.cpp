@@ -99,6 +99,7 @@ InteractingMultipleModel::InteractingMultipleModel(Modes modes, MarkovChain chai
   x_.setZero(size());
   P_.setZero(size(), size());
   estimate_at(x_.data(), P_.data());
+  mode_probabilities_at(&probabilities_);
   out_of_date();
 }
 

@@ -35,7 +35,6 @@ class InteractingMultipleModel final : public TrackedState {
   /// whose arithmetic fails, where others' does not, has lost; `failed` where all have.
   StepStatus update(const AnyMeasurement& measurement, const StateUpdateTarget& update) override;
   void assign(const TrackedState& other) override;
-  const ModeVector* mode_probabilities() const override { return &probabilities_; }
   std::unique_ptr<TrackedState> fresh() const override;
 
  private:

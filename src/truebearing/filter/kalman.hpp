@@ -38,11 +38,11 @@ class KalmanFilter {
   template <LinearMotionModel Motion>
   EIGEN_ALWAYS_INLINE StepStatus predict(const Motion& motion, Scalar dt_s) {
     static_assert(Motion::kStates == N && std::is_same_v<typename Motion::Scalar, Scalar>);
-    const Covariance F = motion.F(dt_s);
+    const Covariance& F = motion.F(dt_s);
     const State x = product(F, x_);
     Covariance carried = carried_;
     const bool valid = Form::template predict<N, Scalar>(F, motion.Q(dt_s), carried);
-    return commit(valid, x, carried);
+    return commit(valid, x, carried, x_, carried_);
   }
 
   /// The same across a nonlinear motion: P by the Jacobian at the estimate before.
@@ -52,15 +52,12 @@ class KalmanFilter {
     const State x = motion.f(x_, dt_s);
     Covariance carried = carried_;
     const bool valid = Form::template predict<N, Scalar>(motion.F(x_, dt_s), motion.Q(dt_s), carried);
-    return commit(valid, x, carried);
+    return commit(valid, x, carried, x_, carried_);
   }
 
   /// The same across a motion whose type is not known here: it carries the estimate itself, where Form carries P.
   StepStatus predict(const SizedMotion<N>& motion, double dt_s) requires std::is_same_v<Scalar, double> {
-    State x = x_;
-    Covariance carried = carried_;
-    const bool valid = Form::template across<N>(motion, dt_s, x, carried);
-    return commit(valid, x, carried);
+    return Form::template across<N>(motion, dt_s, x_, carried_);
   }
 
   /// Takes one measurement z (m). `failed` leaves x and P as they were: z, R or the result not finite, R, S or P not
@@ -77,7 +74,7 @@ class KalmanFilter {
     State x;
     copy(x_, x);
     add_product<1>(update.K, update.nu, x);
-    update.status = commit(valid, x, carried);
+    update.status = commit(valid, x, carried, x_, carried_);
     return update;
   }
 
@@ -86,14 +83,6 @@ class KalmanFilter {
   decltype(auto) P() const { return Form::template to_covariance<N, Scalar>(carried_); }
 
  private:
-  EIGEN_ALWAYS_INLINE StepStatus commit(bool valid, const State& x, const Covariance& carried) {
-    for (int i = 0; i < N; ++i) valid &= x(i) - x(i) == 0;  // of finite numbers only
-    if (!valid) return StepStatus::failed;
-    copy(x, x_);
-    copy(carried, carried_);
-    return StepStatus::ok;
-  }
-
   State x_;
   Covariance carried_;
 };

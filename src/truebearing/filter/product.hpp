@@ -7,6 +7,8 @@
 #include <Eigen/Core>
 #include <utility>
 
+#include "truebearing/core/status.hpp"
+
 namespace truebearing {
 
 /// Which coefficients of a product are formed: all, or those on and below the diagonal of a symmetric result.
@@ -49,6 +51,18 @@ template <typename Scalar, int Rows, int Cols>
 EIGEN_ALWAYS_INLINE void copy(const Eigen::Matrix<Scalar, Rows, Cols>& A, Eigen::Matrix<Scalar, Rows, Cols>& B) {
   for (int j = 0; j < Cols; ++j)
     for (int i = 0; i < Rows; ++i) B(i, j) = A(i, j);
+}
+
+/// How a filter's step ends: x and what is carried of P become the new ones, where these are valid and x is finite.
+template <typename Scalar, int N>
+EIGEN_ALWAYS_INLINE StepStatus commit(bool valid, const Eigen::Matrix<Scalar, N, 1>& new_x,
+                                      const Eigen::Matrix<Scalar, N, N>& new_P, Eigen::Matrix<Scalar, N, 1>& x,
+                                      Eigen::Matrix<Scalar, N, N>& P) {
+  for (int i = 0; i < N; ++i) valid &= new_x(i) - new_x(i) == 0;  // of finite numbers only
+  if (!valid) return StepStatus::failed;
+  copy(new_x, x);
+  copy(new_P, P);
+  return StepStatus::ok;
 }
 
 /// C + Sign A B into C.

@@ -12,6 +12,7 @@
 #include <limits>
 
 #include "truebearing/filter/factorization.hpp"
+#include "truebearing/filter/product.hpp"
 #include "truebearing/filter/update.hpp"
 #include "truebearing/motion/any_motion.hpp"
 
@@ -42,13 +43,13 @@ struct SquareRoot {
     return is_finite<N, Scalar>(U);
   }
 
-  /// predict() across a motion whose type is not known here. x becomes f(x).
+  /// predict() across a motion whose type is not known here. x becomes f(x); `failed` leaves both as they were.
   template <int N>
-  static bool across(const SizedMotion<N>& motion, double dt_s, Eigen::Matrix<double, N, 1>& x,
-                     Eigen::Matrix<double, N, N>& U) {
-    const Eigen::Matrix<double, N, N> F = motion.F(x, dt_s);
-    x = motion.f(x, dt_s);
-    return predict<N, double>(F, motion.Q(dt_s), U);
+  static StepStatus across(const SizedMotion<N>& motion, double dt_s, Eigen::Matrix<double, N, 1>& x,
+                           Eigen::Matrix<double, N, N>& U) {
+    Eigen::Matrix<double, N, N> new_U = U;
+    const bool valid = predict<N, double>(motion.F(x, dt_s), motion.Q(dt_s), new_U);
+    return commit<double, N>(valid, motion.f(x, dt_s), new_U, x, U);
   }
 
   /// False where R is not positive semi-definite, or where S^1/2 has lost its digits: its row i is rotated from terms

@@ -54,7 +54,7 @@ class TrackedState {
   /// Becomes a copy of `other`, which was made by fresh() from this one or from the same.
   virtual void assign(const TrackedState& other) = 0;
   /// mu (r) of a multiple-model state, else nullptr.
-  virtual const ModeVector* mode_probabilities() const { return nullptr; }
+  const ModeVector* mode_probabilities() const { return mu_; }
   /// An independent state of the same kind, not begun.
   virtual std::unique_ptr<TrackedState> fresh() const = 0;
 
@@ -67,6 +67,7 @@ class TrackedState {
     x_ = x;
     P_ = P;
   }
+  void mode_probabilities_at(const ModeVector* mu) { mu_ = mu; }
   /// Of a state whose estimate is made when it is asked for: from now on refresh() has to make it.
   void out_of_date() { is_current_ = false; }
   void up_to_date() const { is_current_ = true; }
@@ -76,6 +77,7 @@ class TrackedState {
   int size_;
   const double* x_ = nullptr;
   const double* P_ = nullptr;
+  const ModeVector* mu_ = nullptr;
   mutable bool is_current_ = true;
 };
 

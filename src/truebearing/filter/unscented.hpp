@@ -45,7 +45,7 @@ class UnscentedKalmanFilter {
     const Covariance F = motion.F(dt_s);
     Covariance P = P_;
     const bool valid = detail::CovarianceForm::predict<N, Scalar>(F, motion.Q(dt_s), P);
-    return commit(valid, product(F, x_), P);
+    return commit(valid, product(F, x_), P, x_, P_);
   }
 
   /// The same across a nonlinear motion, through the points.
@@ -65,16 +65,13 @@ class UnscentedKalmanFilter {
     Covariance P = motion.Q(dt_s);
     add_squares<N>(d, P);
     detail::mirror_lower<N, Scalar>(P);
-    return commit(is_positive_semidefinite<N, Scalar>(P), centre + shift, P);
+    return commit(is_positive_semidefinite<N, Scalar>(P), State(centre + shift), P, x_, P_);
   }
 
   /// The same across a motion whose type is not known here.
   StepStatus predict(const SizedMotion<N>& motion, double dt_s) requires std::is_same_v<Scalar, double> {
     if (!motion.is_linear()) return predict<SizedMotion<N>>(motion, dt_s);
-    State x = x_;
-    Covariance P = P_;
-    const bool valid = motion.carry(dt_s, x, P);
-    return commit(valid, x, P);
+    return motion.carry(dt_s, x_, P_);
   }
 
   /// Takes one measurement z (m), over points drawn anew from P. `failed` leaves x and P as they were: z, R or the
@@ -129,7 +126,7 @@ class UnscentedKalmanFilter {
     detail::mirror_lower<N, Scalar>(P);
 
     const bool valid = factors.valid & is_positive_semidefinite<M, Scalar>(R) & is_positive_semidefinite<N, Scalar>(P);
-    update.status = commit(valid, x_ + update.K * update.nu, P);
+    update.status = commit(valid, State(x_ + update.K * update.nu), P, x_, P_);
     return update;
   }
 
@@ -156,14 +153,6 @@ class UnscentedKalmanFilter {
       for (int col = 0; col < Rows; ++col)
         for (int row = 0; row < Rows; ++row) A(row, col) += weight * d(row, i) * d(col, i);
     }
-  }
-
-  StepStatus commit(bool valid, const State& x, const Covariance& P) {
-    for (int i = 0; i < N; ++i) valid &= x(i) - x(i) == 0;  // of finite numbers only
-    if (!valid) return StepStatus::failed;
-    x_ = x;
-    P_ = P;
-    return StepStatus::ok;
   }
 
   State x_;

@@ -5,6 +5,8 @@
 #include <Eigen/Core>
 #include <string_view>
 
+#include "truebearing/core/status.hpp"
+
 namespace truebearing {
 
 /// A motion model of any length.
@@ -44,8 +46,8 @@ class SizedMotion : public AnyMotion {
   virtual Matrix F(const State& x, double dt_s) const = 0;  ///< of a linear model whatever x is
   virtual Matrix Q(double dt_s) const = 0;
 
-  /// x = f(x, dt), P = F P F' + Q. False where P is then no covariance.
-  virtual bool carry(double dt_s, State& x, Matrix& P) const = 0;
+  /// x = f(x, dt), P = F P F' + Q. `failed`, where x is then not finite or P no covariance, leaves both as they were.
+  virtual StepStatus carry(double dt_s, State& x, Matrix& P) const = 0;
 
  protected:
   SizedMotion(bool is_linear, std::string_view rest) : AnyMotion(N, is_linear, rest) {}

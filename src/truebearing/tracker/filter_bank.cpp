@@ -25,12 +25,12 @@ FilterBank::FilterBank(const StateSpace& space, std::unique_ptr<FilterGroup> gro
       sensors_(std::move(sensors)),
       hypotheses_(std::move(hypotheses)),
       suppose_(std::move(suppose)),
-      of_sensor_(sensors_.size()),
-      taken_(hypotheses_.size()),
+      taken_(sensors_.size()),
       gained_(hypotheses_.size()),
       weights_(hypotheses_.size()) {
   if (hypotheses_.empty() || !group || group->size() != hypotheses_.size() || space.size() > group->states())
     throw std::invalid_argument("a bank has a filter for each hypothesis, of states as long as its space");
+  for (const Hypothesis& hypothesis : hypotheses_) sensor_of_.push_back(hypothesis.sensor);
   members_ = {std::move(group), std::vector<double>(hypotheses_.size())};
   shown_ = another();
   reset();
@@ -118,9 +118,8 @@ StepStatus FilterBank::predict(double dt_s) {
 
 // `failed` where no member can explain the measurement in finite numbers. One that cannot, where others can, has lost.
 StepStatus FilterBank::weigh(const Measurement& measurement) {
-  for (std::size_t s = 0; s < sensors_.size(); ++s) of_sensor_[s] = &sensors_[s]->take(measurement);
-  for (std::size_t i = 0; i < taken_.size(); ++i) taken_[i] = of_sensor_[hypotheses_[i].sensor];
-  shown_.filters->update(taken_, gained_);
+  for (std::size_t s = 0; s < sensors_.size(); ++s) taken_[s] = &sensors_[s]->take(measurement);
+  shown_.filters->update(taken_, sensor_of_, gained_);
   double largest = -kInfinity;
   for (std::size_t i = 0; i < gained_.size(); ++i) {
     shown_.log_weights[i] += gained_[i];

@@ -75,9 +75,9 @@ class FilterBank final : public Tracker {
   double used_time_s_ = 0.0;
   std::optional<TargetGuess> guess_;  // the latest since reset
   StepRecord record_;
+  std::vector<std::size_t> sensor_of_;  // of each hypothesis
   // Of one step.
-  std::vector<const AnyMeasurement*> of_sensor_;
-  std::vector<const AnyMeasurement*> taken_;  // of each hypothesis
+  std::vector<const AnyMeasurement*> taken_;  // by each sensor
   std::vector<double> gained_;
   std::vector<double> weights_;
 };

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
+
+#include "truebearing/core/with_count.hpp"
 
 namespace truebearing {
 namespace {
@@ -25,16 +28,15 @@ FilterTracker::FilterTracker(const StateSpace& space, std::unique_ptr<TrackedSta
       sensor_(std::move(sensor)),
       start_(std::move(start)),
       options_(options),
-      used_(std::move(state)),
-      predicted_(used_->fresh()),
-      updated_(used_->fresh()) {
+      state_(std::move(state)),
+      kept_(state_->fresh()) {
   check();
   reset();
 }
 
 void FilterTracker::check() const {
   const auto* prior = std::get_if<PriorStart>(&start_);
-  if (prior && (prior->x.size() != used_->size() || prior->P.rows() != used_->size()))
+  if (prior && (prior->x.size() != state_->size() || prior->P.rows() != state_->size()))
     throw std::invalid_argument("a prior has as many components as the state");
   if ((std::holds_alternative<OnePointStart>(start_) || std::holds_alternative<TwoPointStart>(start_)) &&
       !sensor_->tells_position())
@@ -43,7 +45,7 @@ void FilterTracker::check() const {
     throw std::invalid_argument("a start from a range needs measured bearings");
   if (options_.output_pull > 0.0 && !sensor_->measures_position())
     throw std::invalid_argument("output_pull needs measured positions");
-  if (space_->size() > used_->size() || sensor_->states() > used_->size())
+  if (space_->size() > state_->size() || sensor_->states() > state_->size())
     throw std::invalid_argument("the state is shorter than its space, or than what the sensor looks at");
 }
 
@@ -61,13 +63,15 @@ std::span<const StepRecord> FilterTracker::step(const Measurement& measurement) 
   record_.sensor = measurement.sensor;
 
   // The filter stays at its last used measurement: a missing one leaves no trace in what follows, to the bit.
-  predicted_->assign(*used_);
+  kept_->assign(*state_);
   record_.status = predict(measurement.time_s - used_time_s_);
   if (record_.status == StepStatus::ok) record_.status = usable ? update(measurement) : StepStatus::coasted;
-  if (record_.status != StepStatus::ok) return publish(*predicted_);
-  used_.swap(updated_);
-  used_time_s_ = measurement.time_s;
-  return publish(*used_);
+  const std::span<const StepRecord> published = publish();
+  if (record_.status == StepStatus::ok)
+    used_time_s_ = measurement.time_s;
+  else
+    state_.swap(kept_);
+  return published;
 }
 
 void FilterTracker::reset() {
@@ -83,25 +87,25 @@ void FilterTracker::reset() {
 
 void FilterTracker::take_over(double time_s, const BoundedVector& x, const BoundedMatrix& P) {
   const auto* hand_over = std::get_if<HandOverStart>(&start_);
-  begin(lengthened({x, P}, used_->size(), hand_over ? hand_over->rest_sigma : 0.0));
+  begin(lengthened({x, P}, state_->size(), hand_over ? hand_over->rest_sigma : 0.0));
   pending_.reset();
   used_time_s_ = time_s;
 }
 
 std::unique_ptr<Tracker> FilterTracker::fresh() const {
-  return std::make_unique<FilterTracker>(*space_, used_->fresh(), sensor_->fresh(), start_, options_);
+  return std::make_unique<FilterTracker>(*space_, state_->fresh(), sensor_->fresh(), start_, options_);
 }
 
 RecordBlocks FilterTracker::blocks() const {
   return {.prediction = true,
           .innovation = true,
           .gain = true,
-          .mode_probabilities = used_->mode_probabilities() != nullptr,
+          .mode_probabilities = state_->mode_probabilities() != nullptr,
           .measures_position = sensor_->measures_position()};
 }
 
 void FilterTracker::begin(const PriorStart& start) {
-  used_->begin(start.x.data(), start.P.data());
+  state_->begin(start.x.data(), start.P.data());
   begun_ = true;
 }
 
@@ -121,17 +125,17 @@ std::span<const StepRecord> FilterTracker::start_from(const Measurement& measure
     const std::optional<Sight> sight = sensor_->sight(measurement);
     const GaussianState plane = prior->state(sight->bearing_rad, sight->sigma_rad, sight->from, guess_);
     const std::optional<PriorStart> start = sensor_->believe(plane, measurement);
-    return start ? begin_from(measurement, lengthened(*start, used_->size(), 0.0)) : std::span<const StepRecord>();
+    return start ? begin_from(measurement, lengthened(*start, state_->size(), 0.0)) : std::span<const StepRecord>();
   }
   if (const auto* one_point = std::get_if<OnePointStart>(&start_))
     return begin_from(measurement,
                       lengthened(one_point_state(*sensor_->fix(measurement), one_point->velocity_sigma_mps),
-                                 used_->size(), one_point->rest_sigma));
+                                 state_->size(), one_point->rest_sigma));
   const auto* two_point = std::get_if<TwoPointStart>(&start_);
   if (two_point && pending_ && measurement.time_s > pending_->time_s)
     return begin_from(measurement, lengthened(two_point_state(*sensor_->fix(*pending_), *sensor_->fix(measurement),
                                                               measurement.time_s - pending_->time_s),
-                                              used_->size(), two_point->rest_sigma));
+                                              state_->size(), two_point->rest_sigma));
   pending_ = measurement;
   return {};
 }
@@ -139,7 +143,7 @@ std::span<const StepRecord> FilterTracker::start_from(const Measurement& measure
 std::span<const StepRecord> FilterTracker::begin_from(const Measurement& measurement, const PriorStart& start) {
   begin(start);
   pending_.reset();
-  if (!used_->x().allFinite() || !used_->P().allFinite()) {
+  if (!state_->x().allFinite() || !state_->P().allFinite()) {
     ++guard_.counts.failed;
     begun_ = false;
     return {};
@@ -149,40 +153,50 @@ std::span<const StepRecord> FilterTracker::begin_from(const Measurement& measure
   record_.time_s = measurement.time_s;
   record_.sensor = measurement.sensor;
   record_.status = StepStatus::ok;
-  return publish(*used_);
+  return publish();
+}
+
+StepStatus FilterTracker::cross(double dt_s) {
+  return dt_s > 0.0 ? state_->predict(std::min(dt_s, options_.lost_after_s)) : StepStatus::ok;
 }
 
 StepStatus FilterTracker::predict(double dt_s) {
   // A failed prediction leaves the filter where it was, which is not where it would be by now.
-  if (dt_s > 0.0 && predicted_->predict(std::min(dt_s, options_.lost_after_s)) == StepStatus::failed) {
+  if (cross(dt_s) == StepStatus::failed) {
     ++guard_.counts.failed;
     return StepStatus::failed;
   }
   Prediction& prediction = record_.prediction.emplace(Unfilled());
-  copy_published(*predicted_, prediction.x, prediction.P);
+  copy_published(prediction.x, prediction.P);
   return StepStatus::ok;
 }
 
+// Leaves the state at the prediction where the measurement is not used.
 StepStatus FilterTracker::update(const Measurement& measurement) {
-  updated_->assign(*predicted_);
+  const auto predict_again = [&] {
+    state_->assign(*kept_);
+    cross(measurement.time_s - used_time_s_);
+  };
   const AnyMeasurement& taken = sensor_->take(measurement);
   Innovation& innovation = record_.innovation.emplace(Unfilled());
   BoundedMatrix& gain = record_.gain.emplace();
-  const StepStatus status = updated_->update(taken, {innovation.nu, innovation.S, gain, innovation.nis});
+  const StepStatus status = state_->update(taken, {innovation.nu, innovation.S, gain, innovation.nis});
   if (status == StepStatus::failed || !std::isfinite(innovation.nis)) {  // so far off that its square overflows
     ++guard_.counts.failed;
     record_.innovation.reset();
     record_.gain.reset();
+    predict_again();
     return StepStatus::failed;
   }
-  innovation.z = taken.value();
+  with_length(taken, [&](const auto& sized) { innovation.z = sized.z; });
   if (!gate_.passes(innovation.nis)) {
     ++guard_.counts.gated;
     record_.gain.reset();
+    predict_again();
     return StepStatus::rejected;
   }
   if (options_.output_pull > 0.0) with_length(taken, [&](const auto& sized) { pull(sized); });
-  if (space_->size() < used_->size()) gain.conservativeResize(space_->size(), Eigen::NoChange);
+  if (space_->size() < state_->size()) gain.conservativeResize(space_->size(), Eigen::NoChange);
   return StepStatus::ok;
 }
 
@@ -200,34 +214,33 @@ template <int M>
 void FilterTracker::pull(const SizedMeasurement<M>& measurement) {
   using Vector = Eigen::Matrix<double, M, 1>;
   using Square = Eigen::Matrix<double, M, M>;
-  const Vector position = updated_->x().template head<M>();
+  const Vector position = state_->x().template head<M>();
   const Square S = record_.innovation->S;
   const Square left = Square::Identity() - Square(record_.gain->template topRows<M>());
   moved_ = options_.output_pull * (measurement.z - position);
   spread_ = options_.output_pull * options_.output_pull * left * S * left.transpose();
 }
 
-std::span<const StepRecord> FilterTracker::publish(const TrackedState& state) {
-  copy_published(state, record_.x, record_.P);
+std::span<const StepRecord> FilterTracker::publish() {
+  copy_published(record_.x, record_.P);
   if (options_.output_pull > 0.0 && record_.gain) {
     record_.x.head(moved_.size()) += moved_;
     record_.P.topLeftCorner(moved_.size(), moved_.size()) += spread_;
   }
-  if (const ModeVector* probabilities = state.mode_probabilities()) record_.mode_probabilities = *probabilities;
+  if (const ModeVector* probabilities = state_->mode_probabilities()) record_.mode_probabilities = *probabilities;
   return {&record_, 1};
 }
 
 // Without the components that the space does not have.
-void FilterTracker::copy_published(const TrackedState& state, BoundedVector& x, BoundedMatrix& P) const {
-  const int n = space_->size(), states = state.size();
+void FilterTracker::copy_published(BoundedVector& x, BoundedMatrix& P) const {
+  const int n = space_->size(), states = state_->size();
+  const double *from_x = state_->x_data(), *from_P = state_->P_data();
   x.resize(n);
   P.resize(n, n);
-  std::copy_n(state.x_data(), n, x.data());
-  if (n == states) {
-    std::copy_n(state.P_data(), n * n, P.data());
-    return;
-  }
-  for (int j = 0; j < n; ++j) std::copy_n(state.P_data() + j * states, n, P.data() + j * n);
+  with_count(n, [&]<int N>(std::integral_constant<int, N>) {
+    std::copy_n(from_x, N, x.data());
+    for (int j = 0; j < N; ++j) std::copy_n(from_P + j * states, N, P.data() + j * N);
+  });
 }
 
 void FilterTracker::clear_blocks() {

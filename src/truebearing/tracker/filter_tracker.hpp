@@ -52,14 +52,15 @@ class FilterTracker : public Successor {
   void restart(double time_s);
   std::span<const StepRecord> start_from(const Measurement& measurement);
   std::span<const StepRecord> begin_from(const Measurement& measurement, const PriorStart& start);
+  StepStatus cross(double dt_s);
   StepStatus predict(double dt_s);
   StepStatus update(const Measurement& measurement);
   std::span<const StepRecord> refuse();
   template <int M>
   void pull(const SizedMeasurement<M>& measurement);
-  std::span<const StepRecord> publish(const TrackedState& state);
+  std::span<const StepRecord> publish();
   void clear_blocks();
-  void copy_published(const TrackedState& state, BoundedVector& x, BoundedMatrix& P) const;
+  void copy_published(BoundedVector& x, BoundedMatrix& P) const;
 
   const StateSpace* space_;
   std::unique_ptr<AnySensor> sensor_;
@@ -69,9 +70,9 @@ class FilterTracker : public Successor {
   StreamGuard guard_;
   Gate gate_;
   bool begun_ = false;
-  std::unique_ptr<TrackedState> used_;       // at the last measurement that was used
-  std::unique_ptr<TrackedState> predicted_;  // at this step, before its measurement
-  std::unique_ptr<TrackedState> updated_;    // at this step, with it
+  // At the last measurement that was used, between steps. Within one the state goes on, and what it was is kept.
+  std::unique_ptr<TrackedState> state_;
+  std::unique_ptr<TrackedState> kept_;
   double used_time_s_ = 0.0;
   std::optional<Measurement> pending_;  // the first of two positions
   std::optional<TargetGuess> guess_;    // the latest since reset, of a tracker of bearings

@@ -20,6 +20,16 @@ struct Unfilled {
   }
 };
 
+// Updates that fail one after another, until the track is given up.
+constexpr int kFailedInRow = 3;
+
+// As wide as lets a measurement pass: P times `factor`.
+void widen(TrackedState& state, double factor) {
+  const BoundedVector x = state.x();
+  const BoundedMatrix P = factor * state.P();
+  state.begin(x.data(), P.data());
+}
+
 }  // namespace
 
 FilterTracker::FilterTracker(const StateSpace& space, std::unique_ptr<TrackedState> state,
@@ -29,7 +39,8 @@ FilterTracker::FilterTracker(const StateSpace& space, std::unique_ptr<TrackedSta
       start_(std::move(start)),
       options_(options),
       state_(std::move(state)),
-      kept_(state_->fresh()) {
+      kept_(state_->fresh()),
+      challenger_(state_->fresh()) {
   check();
   reset();
 }
@@ -55,7 +66,8 @@ std::span<const StepRecord> FilterTracker::step(const Measurement& measurement) 
   if (verdict == StreamGuard::Verdict::repeated || verdict == StreamGuard::Verdict::out_of_order) return refuse();
   if (measurement.guess) guess_ = measurement.guess;
 
-  if (usable && begun_ && measurement.time_s - used_time_s_ > options_.lost_after_s) restart(measurement.time_s);
+  if (usable && begun_ && (lost_ || measurement.time_s - used_time_s_ > options_.lost_after_s))
+    restart(measurement.time_s);
   if (!begun_) return usable ? start_from(measurement) : std::span<const StepRecord>();
 
   clear_blocks();
@@ -65,7 +77,18 @@ std::span<const StepRecord> FilterTracker::step(const Measurement& measurement) 
   // The filter stays at its last used measurement: a missing one leaves no trace in what follows, to the bit.
   kept_->assign(*state_);
   record_.status = predict(measurement.time_s - used_time_s_);
+  if (!is_sensible()) {  // so long ago that nothing is known any more
+    if (!usable) return give_up();
+    restart(measurement.time_s);
+    if (!begun_) return start_from(measurement);
+    kept_->assign(*state_);
+    record_.status = predict(0.0);
+  }
   if (record_.status == StepStatus::ok) record_.status = usable ? update(measurement) : StepStatus::coasted;
+  if (!is_sensible()) {
+    lost_ = true;
+    return give_up();
+  }
   const std::span<const StepRecord> published = publish();
   if (record_.status == StepStatus::ok)
     used_time_s_ = measurement.time_s;
@@ -112,7 +135,11 @@ void FilterTracker::begin(const PriorStart& start) {
 void FilterTracker::restart(double time_s) {
   ++record_.track;
   pending_.reset();
-  begun_ = false;
+  turned_away_.reset();
+  agreeing_ = 0;
+  failed_in_row_ = 0;
+  gate_ = Gate(options_.gate_nis);
+  begun_ = lost_ = false;
   if (const auto* prior = std::get_if<PriorStart>(&start_)) begin(*prior);
   used_time_s_ = time_s;
 }
@@ -120,30 +147,14 @@ void FilterTracker::restart(double time_s) {
 // Of positions, the first of two measurements waits; the second makes the state. Where both are of one time, the later
 // one waits. A bearing makes it by itself.
 std::span<const StepRecord> FilterTracker::start_from(const Measurement& measurement) {
-  if (const auto* prior = std::get_if<RangePrior>(&start_)) {
-    if (!prior->suffices_with(guess_)) return {};
-    const std::optional<Sight> sight = sensor_->sight(measurement);
-    const GaussianState plane = prior->state(sight->bearing_rad, sight->sigma_rad, sight->from, guess_);
-    const std::optional<PriorStart> start = sensor_->believe(plane, measurement);
-    return start ? begin_from(measurement, lengthened(*start, state_->size(), 0.0)) : std::span<const StepRecord>();
+  const std::optional<PriorStart> start = start_at(pending_, measurement);
+  if (!start) {
+    pending_ = measurement;
+    return {};
   }
-  if (const auto* one_point = std::get_if<OnePointStart>(&start_))
-    return begin_from(measurement,
-                      lengthened(one_point_state(*sensor_->fix(measurement), one_point->velocity_sigma_mps),
-                                 state_->size(), one_point->rest_sigma));
-  const auto* two_point = std::get_if<TwoPointStart>(&start_);
-  if (two_point && pending_ && measurement.time_s > pending_->time_s)
-    return begin_from(measurement, lengthened(two_point_state(*sensor_->fix(*pending_), *sensor_->fix(measurement),
-                                                              measurement.time_s - pending_->time_s),
-                                              state_->size(), two_point->rest_sigma));
-  pending_ = measurement;
-  return {};
-}
-
-std::span<const StepRecord> FilterTracker::begin_from(const Measurement& measurement, const PriorStart& start) {
-  begin(start);
+  begin(*start);
   pending_.reset();
-  if (!state_->x().allFinite() || !state_->P().allFinite()) {
+  if (!is_sensible()) {
     ++guard_.counts.failed;
     begun_ = false;
     return {};
@@ -156,13 +167,50 @@ std::span<const StepRecord> FilterTracker::begin_from(const Measurement& measure
   return publish();
 }
 
-StepStatus FilterTracker::cross(double dt_s) {
-  return dt_s > 0.0 ? state_->predict(std::min(dt_s, options_.lost_after_s)) : StepStatus::ok;
+// The state that a measurement begins, with the one before it where it needs two. Nothing where that is not there, or so
+// long ago that the target would be lost, or where measurements begin no track.
+std::optional<PriorStart> FilterTracker::start_at(const std::optional<Measurement>& waiting,
+                                                  const Measurement& measurement) {
+  const int n = state_->size();
+  if (const auto* prior = std::get_if<RangePrior>(&start_)) {
+    if (!prior->suffices_with(guess_)) return {};
+    const std::optional<Sight> sight = sensor_->sight(measurement);
+    const GaussianState plane = prior->state(sight->bearing_rad, sight->sigma_rad, sight->from, guess_);
+    const std::optional<PriorStart> start = sensor_->believe(plane, measurement);
+    return start ? std::optional(lengthened(*start, n, 0.0)) : std::nullopt;
+  }
+  if (const auto* one_point = std::get_if<OnePointStart>(&start_))
+    return lengthened(one_point_state(*sensor_->fix(measurement), one_point->velocity_sigma_mps), n,
+                      one_point->rest_sigma);
+  const auto* two_point = std::get_if<TwoPointStart>(&start_);
+  const double dt_s = waiting ? measurement.time_s - waiting->time_s : 0.0;
+  if (!two_point || !(dt_s > 0.0) || dt_s > options_.lost_after_s) return {};
+  PriorStart start = lengthened(two_point_state(*sensor_->fix(*waiting), *sensor_->fix(measurement), dt_s), n,
+                                two_point->rest_sigma);
+  add_motion(dt_s, start);
+  return start;
+}
+
+// What the target may have done between two points, of which the line through them knows nothing: with Q of its motion
+// over dt, the error of (z2 - z1) / dt as its velocity now grows by [1/dt, -1] Q [1/dt, -1]'.
+void FilterTracker::add_motion(double dt_s, PriorStart& start) {
+  constexpr double kNearlyNothing = 1e-12;  // filters in other forms than P want it to be positive
+  const int n = state_->size(), d = space_->size() / 2;
+  const BoundedMatrix P = kNearlyNothing * BoundedMatrix::Identity(n, n);
+  challenger_->begin(start.x.data(), P.data());
+  if (challenger_->predict(dt_s) == StepStatus::failed) return;
+  const BoundedMatrix Q = challenger_->P();
+  start.P.block(d, d, d, d) += Q.block(d, d, d, d) - (Q.block(0, d, d, d) + Q.block(d, 0, d, d)) / dt_s +
+                               Q.block(0, 0, d, d) / (dt_s * dt_s);
+}
+
+StepStatus FilterTracker::cross(double dt_s, TrackedState& state) const {
+  return dt_s > 0.0 ? state.predict(std::min(dt_s, options_.lost_after_s)) : StepStatus::ok;
 }
 
 StepStatus FilterTracker::predict(double dt_s) {
   // A failed prediction leaves the filter where it was, which is not where it would be by now.
-  if (cross(dt_s) == StepStatus::failed) {
+  if (cross(dt_s, *state_) == StepStatus::failed) {
     ++guard_.counts.failed;
     return StepStatus::failed;
   }
@@ -175,7 +223,7 @@ StepStatus FilterTracker::predict(double dt_s) {
 StepStatus FilterTracker::update(const Measurement& measurement) {
   const auto predict_again = [&] {
     state_->assign(*kept_);
-    cross(measurement.time_s - used_time_s_);
+    cross(measurement.time_s - used_time_s_, *state_);
   };
   const AnyMeasurement& taken = sensor_->take(measurement);
   Innovation& innovation = record_.innovation.emplace(Unfilled());
@@ -183,21 +231,97 @@ StepStatus FilterTracker::update(const Measurement& measurement) {
   const StepStatus status = state_->update(taken, {innovation.nu, innovation.S, gain, innovation.nis});
   if (status == StepStatus::failed || !std::isfinite(innovation.nis)) {  // so far off that its square overflows
     ++guard_.counts.failed;
+    lost_ = ++failed_in_row_ >= kFailedInRow;
     record_.innovation.reset();
     record_.gain.reset();
     predict_again();
     return StepStatus::failed;
   }
   with_length(taken, [&](const auto& sized) { innovation.z = sized.z; });
-  if (!gate_.passes(innovation.nis)) {
-    ++guard_.counts.gated;
-    record_.gain.reset();
-    predict_again();
-    return StepStatus::rejected;
+  failed_in_row_ = 0;
+  switch (gate_.judge(innovation.nis)) {
+    case Gate::Verdict::passes:
+      agreeing_ = 0;
+      turned_away_.reset();
+      break;
+    case Gate::Verdict::passes_widened:
+      predict_again();
+      widen(*state_, innovation.nis / gate_.threshold());
+      agreeing_ = 0;
+      turned_away_.reset();
+      if (state_->update(taken, {innovation.nu, innovation.S, gain, innovation.nis}) == StepStatus::failed) {
+        predict_again();
+        return StepStatus::rejected;
+      }
+      break;
+    case Gate::Verdict::rejected: {
+      predict_again();
+      const bool takes_over = challenge(measurement, innovation.nis);
+      record_.gain.reset();
+      if (!takes_over) {
+        ++guard_.counts.gated;
+        return StepStatus::rejected;
+      }
+      record_.innovation.reset();
+      state_.swap(challenger_);
+      agreeing_ = 0;
+      turned_away_.reset();
+      gate_ = Gate(options_.gate_nis);
+      return StepStatus::ok;
+    }
   }
   if (options_.output_pull > 0.0) with_length(taken, [&](const auto& sized) { pull(sized); });
   if (space_->size() < state_->size()) gain.conservativeResize(space_->size(), Eigen::NoChange);
   return StepStatus::ok;
+}
+
+// Measurements that the gate turns away one after another, and that agree with each other, are the target: then it was
+// the track that was wrong. True where a start of their own takes over.
+bool FilterTracker::challenge(const Measurement& measurement, double nis) {
+  constexpr int kAgreeing = 3;
+  const int first = std::holds_alternative<TwoPointStart>(start_) ? 2 : 1;  // agreeing ones that make a challenger
+  StateUpdate update;
+  if (agreeing_ >= first && cross(measurement.time_s - challenger_time_s_, *challenger_) == StepStatus::ok &&
+      challenger_->update(sensor_->take(measurement), update) == StepStatus::ok && update.nis <= gate_.threshold()) {
+    ++agreeing_;
+  } else if (const std::optional<PriorStart> start = start_at(turned_away_, measurement)) {
+    challenger_->begin(start->x.data(), start->P.data());
+    agreeing_ = first;
+  } else if (first == 1) {
+    // Measurements begin no track: what was predicted, with the covariance that lets this one pass.
+    challenger_->assign(*state_);
+    widen(*challenger_, nis / gate_.threshold());
+    agreeing_ = challenger_->update(sensor_->take(measurement), update) == StepStatus::ok ? 1 : 0;
+  } else {
+    agreeing_ = 1;  // the first of two points
+  }
+  challenger_time_s_ = measurement.time_s;
+  turned_away_ = measurement;
+  return agreeing_ >= kAgreeing;
+}
+
+// Whether a track at a place that a target can have, known better than not at all.
+bool FilterTracker::is_sensible() const {
+  constexpr double kFarthest_m = 1e7;
+  const int n = state_->size(), d = space_->size() / 2;
+  const double *x = state_->x_data(), *P = state_->P_data();
+  double sum = 0.0;  // not finite where a number is not
+  for (int i = 0; i < n; ++i) sum += x[i];
+  for (int i = 0; i < n * n; ++i) sum += P[i];
+  bool sensible = std::isfinite(sum);
+  for (int i = 0; i < n; ++i) sensible &= P[i * (n + 1)] >= 0.0;
+  for (int i = 0; i < d; ++i)
+    sensible &= std::abs(x[i]) <= kFarthest_m && P[i * (n + 1)] <= kFarthest_m * kFarthest_m;
+  return sensible;
+}
+
+// What came out is no track any more: the last one that was stands in the record.
+std::span<const StepRecord> FilterTracker::give_up() {
+  ++guard_.counts.failed;
+  record_.status = StepStatus::failed;
+  clear_blocks();
+  state_.swap(kept_);
+  return publish();
 }
 
 // A measurement that was not looked at: the state of the step before stands.

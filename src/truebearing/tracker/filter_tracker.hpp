@@ -51,8 +51,12 @@ class FilterTracker : public Successor {
   void begin(const PriorStart& start);
   void restart(double time_s);
   std::span<const StepRecord> start_from(const Measurement& measurement);
-  std::span<const StepRecord> begin_from(const Measurement& measurement, const PriorStart& start);
-  StepStatus cross(double dt_s);
+  std::optional<PriorStart> start_at(const std::optional<Measurement>& waiting, const Measurement& measurement);
+  void add_motion(double dt_s, PriorStart& start);
+  bool challenge(const Measurement& measurement, double nis);
+  bool is_sensible() const;
+  std::span<const StepRecord> give_up();
+  StepStatus cross(double dt_s, TrackedState& state) const;
   StepStatus predict(double dt_s);
   StepStatus update(const Measurement& measurement);
   std::span<const StepRecord> refuse();
@@ -74,6 +78,13 @@ class FilterTracker : public Successor {
   std::unique_ptr<TrackedState> state_;
   std::unique_ptr<TrackedState> kept_;
   double used_time_s_ = 0.0;
+  bool lost_ = false;      // the next usable measurement begins a new track
+  int failed_in_row_ = 0;  // updates
+  // A second hypothesis: the track that the measurements which the gate turned away would make.
+  std::unique_ptr<TrackedState> challenger_;
+  double challenger_time_s_ = 0.0;
+  int agreeing_ = 0;                        // of those measurements, one after another; 0: no challenger
+  std::optional<Measurement> turned_away_;  // the last of them
   std::optional<Measurement> pending_;  // the first of two positions
   std::optional<TargetGuess> guess_;    // the latest since reset, of a tracker of bearings
   StepRecord record_;

@@ -158,8 +158,8 @@ TeacherSet collect_teacher_set(const Ensemble& ensemble, const CorrectionSpec& c
     const Eigen::Index count = static_cast<Eigen::Index>(rows.size()) / row_size(d, n);
     const Eigen::Map<const Eigen::MatrixXd> columns(rows.data(), row_size(d, n), count);  // a row to a column
     Eigen::Index part = 0;
-    for (Eigen::MatrixXd* matrix : {&set.X, &set.Y, &set.reference, &set.covariance_factors, &set.reference_factors,
-                                    &set.intervals}) {
+    for (Eigen::MatrixXd* matrix :
+         {&set.X, &set.Y, &set.reference, &set.covariance_factors, &set.reference_factors, &set.intervals}) {
       matrix->middleRows(next, count) = columns.middleRows(part, matrix->cols()).transpose();
       part += matrix->cols();
     }

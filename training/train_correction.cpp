@@ -88,7 +88,7 @@ BoxGate box_gate(const FuzzyTrainingData& data, const Eigen::VectorXd& disagreem
 }
 
 // The intervals of the training data. Those of a single period differ by rounding, which the edge forgives.
-IntervalBox interval_box(const Eigen::MatrixXd& intervals, double quantile) {
+IntervalBox interval_box(const Eigen::MatrixXd& intervals, const BoxSpec& spec) {
   const auto known = [&](Eigen::Index column) {
     std::vector<double> values;
     for (const double value : intervals.col(column))
@@ -97,9 +97,9 @@ IntervalBox interval_box(const Eigen::MatrixXd& intervals, double quantile) {
   };
   IntervalBox box;
   if (known(0).empty()) return box;  // no track has used two measurements
-  box.low_s = quantile_of(known(0), quantile);
-  box.high_s = quantile_of(known(1), 1.0 - quantile);
-  box.longest_coast_s = quantile_of(known(2), 1.0 - quantile);
+  box.low_s = quantile_of(known(0), spec.quantile);
+  box.high_s = std::min(quantile_of(known(1), 1.0 - spec.quantile), spec.longest_interval_s);
+  box.longest_coast_s = quantile_of(known(2), 1.0 - spec.quantile);
   return box;
 }
 
@@ -155,8 +155,7 @@ CorrectionModel train_correction(const Study& study, const std::string& name, co
   const Ensemble ensemble = study.make_ensemble(spec.design.members());
   const StateSpace& space = ensemble.tracker(ensemble.index(spec.design.base)).space();
   const TeacherOptions teacher_options{options.seed, Role::training, options.threads, options.teacher_progress};
-  const std::unique_ptr<Scenario> taught =
-      spec.training.scenario ? study.scenario(*spec.training.scenario) : nullptr;
+  const std::unique_ptr<Scenario> taught = spec.training.scenario ? study.scenario(*spec.training.scenario) : nullptr;
   const TeacherSet teacher = collect_teacher_set(ensemble, spec, taught ? *taught : study.scenario(), teacher_options);
   const FuzzyTrainingData data = training_data(teacher, spec, space);
   const auto begin = std::chrono::steady_clock::now();
@@ -172,15 +171,14 @@ CorrectionModel train_correction(const Study& study, const std::string& name, co
   // Covariance and gate from the wider family, where there is one.
   std::optional<TeacherSet> wider;
   if (spec.training.covariance_scenario)
-    wider = collect_teacher_set(ensemble, spec, *study.scenario(*spec.training.covariance_scenario),
-                                teacher_options);
+    wider = collect_teacher_set(ensemble, spec, *study.scenario(*spec.training.covariance_scenario), teacher_options);
   const TeacherSet& met = wider ? *wider : teacher;
   const Eigen::MatrixXd corrections = outputs(met, model.network);
   fit_covariance(met, corrections, spec, model);
   const bool trusts_another = spec.design.reference != spec.design.base;
   model.gate = box_gate(training_data(met, spec, space),
                         trusts_another ? disagreements(met, corrections, model) : Eigen::VectorXd(), spec.box);
-  model.gate->intervals = interval_box(met.intervals, spec.box.quantile);
+  model.gate->intervals = interval_box(met.intervals, spec.box);
   model.usage = trained.usage;
   model.local_mean = trained.local_mean;
   model.provenance = {{"study", study.name()},

@@ -56,6 +56,27 @@ TEST(Manoeuvre2d, OutsideTheFamilyTheCorrectionIsNoWorseThanTheReference) {
     }
 }
 
+// Every gated correction of the studies that were taught on mixed periods, at periods and with outages of all kinds.
+class Periods : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(Periods, CorrectionIsNowhereWorseThanItsReference) {
+  const Study study = load_study(std::string(GetParam()) + "_periods");
+  const Comparison comparison = run(study, 60);
+  ASSERT_EQ(comparison.sets.size(), 9u);
+  ASSERT_FALSE(study.pairs().empty());
+  for (const auto& [name, set] : comparison.sets)
+    for (const auto& [corrected, reference] : study.pairs())
+      for (const char* quantity : {"position_m", "velocity_mps"}) {
+        SCOPED_TRACE(name);
+        expect_no_worse(set, corrected, reference, quantity, 0.02 * set.tracker(reference)->quantity(quantity)->rmse);
+      }
+}
+
+INSTANTIATE_TEST_SUITE_P(Studies, Periods,
+                         ::testing::Values("manoeuvre_2d", "radar_2d", "radar_1d_family", "flight_ajaccio",
+                                           "flight_belevingsvlucht", "ais_vessels"),
+                         [](const auto& study) { return std::string(study.param); });
+
 TEST(Radar2d, CorrectionInStandardDeviationsHoldsAtAnyRange) {
   const Comparison comparison = run(load_study("radar_2d"), 150);
   expect_below(comparison, "nfnn", 75.0, 26.0);

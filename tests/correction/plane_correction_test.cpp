@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/plane_trackers.hpp"
+#include "truebearing/core/constants.hpp"
 #include "truebearing/core/covariance.hpp"
 #include "truebearing/core/error.hpp"
 #include "truebearing/correction/model_file.hpp"
@@ -70,6 +71,66 @@ TEST(PlaneCorrection, RefereeTakesTheWeightFromANetworkThatIsWrong) {
     EXPECT_EQ(b[0].correction->gate, 1.0);
   }
   EXPECT_LT(gate, 0.01);
+}
+
+// Taught at one second without a gap, and open to everything else.
+CorrectionModel one_second_model() {
+  CorrectionModel model = plane_model(3);
+  model.gate = testing::box(static_cast<Eigen::Index>(model.design.features.size()), -1e9, 1e9, 1e9);
+  model.gate->intervals = {.low_s = 1.0, .high_s = 1.0, .longest_coast_s = 0.0};
+  return model;
+}
+
+double last_gate(std::vector<Measurement> log, double stretch) {
+  CorrectedTracker tracker = corrected(one_second_model(), {});
+  double gate = -1.0;
+  for (Measurement& measurement : log) {
+    measurement.time_s *= stretch;
+    const auto records = tracker.step(measurement);
+    if (!records.empty() && records[0].correction) gate = records[0].correction->gate;
+  }
+  return gate;
+}
+
+TEST(PlaneCorrection, GateClosesAtPeriodsThatWereNotTaught) {
+  const std::vector<Measurement> log = plane_log(4, 30);
+  EXPECT_EQ(last_gate(log, 1.0), 1.0);
+  EXPECT_GT(last_gate(log, 1.05), 0.8);
+  for (const double stretch : {0.5, 2.0, 3.0}) EXPECT_LT(last_gate(log, stretch), 1e-6) << stretch;
+}
+
+TEST(PlaneCorrection, GateClosesWhileTheBaseCoastsAndForAWhileAfter) {
+  std::vector<Measurement> log = plane_log(4, 30);
+  std::vector<double> gates;
+  CorrectedTracker tracker = corrected(one_second_model(), {});
+  for (std::size_t k = 0; k < log.size(); ++k) {
+    if (k == 20) log[k].z.setConstant(kNaN);
+    const auto records = tracker.step(log[k]);
+    gates.push_back(records.empty() || !records[0].correction ? -1.0 : records[0].correction->gate);
+  }
+  EXPECT_EQ(gates[19], 1.0);
+  for (std::size_t k = 20; k <= 23; ++k) EXPECT_LT(gates[k], 1e-6) << k;
+  EXPECT_EQ(gates[24], 1.0);
+}
+
+TEST(PlaneCorrection, EmptyRowLeavesNoTraceInWhatTheRefereeRemembers) {
+  CorrectionModel model = plane_model(3, 3.0);
+  model.gate.reset();
+  CorrectedTracker with = corrected(model), without = corrected(model);
+  for (const Measurement& measurement : plane_log(5, 60)) {
+    const auto a = without.step(measurement);
+    const std::vector<StepRecord> kept(a.begin(), a.end());
+    Measurement empty = measurement;
+    empty.time_s += 0.3;
+    empty.z.setConstant(kNaN);
+    const auto b = with.step(measurement);
+    ASSERT_EQ(kept.size(), b.size());
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+      EXPECT_EQ(kept[i].x, b[i].x);
+      EXPECT_EQ(kept[i].P, b[i].P);
+    }
+    with.step(empty);
+  }
 }
 
 TEST(PlaneCorrection, ModelFileKeepsEverything) {

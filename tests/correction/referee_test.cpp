@@ -7,22 +7,39 @@
 namespace truebearing::referee_test {
 namespace {
 
+struct Errors {
+  double position_m = 0.0;
+  double velocity_mps = 0.0;
+};
+
 // A target on a line at 10 m/s, measured every second; what two estimates of it are off by decides.
-double weight_after(int steps, double corrected_error_m, double reference_error_m, const RefereeOptions& options = {}) {
+Referee::Weights weights_after(int steps, const Errors& corrected, const Errors& reference,
+                               const RefereeOptions& options = {}) {
   RandomStream random({.seed = 2}, StreamId::test);
   Referee referee;
   StepRecord base;
   base.x = Eigen::Vector2d::Zero();
+  StepRecord reference_record = base;
+  reference_record.P = Eigen::Matrix2d::Identity();
   for (int k = 1; k <= steps; ++k) {
     const double position = 10.0 * k;
-    base.time_s = k;
+    base.time_s = reference_record.time_s = k;
     base.innovation = Innovation{BoundedVector::Constant(1, position + random.normal()), BoundedVector::Zero(1),
                                  BoundedMatrix::Constant(1, 1, 2.0), 0.0};
     referee.judge(base, options);
-    referee.predict(k, Eigen::Vector2d(position + corrected_error_m, 10.0),
-                    Eigen::Vector2d(position + reference_error_m, 10.0));
+    const Referee::Weights w = referee.weights(options);
+    const BoundedVector x_corrected = Eigen::Vector2d(position + corrected.position_m, 10.0 + corrected.velocity_mps);
+    reference_record.x = Eigen::Vector2d(position + reference.position_m, 10.0 + reference.velocity_mps);
+    const BoundedVector published =
+        reference_record.x +
+        BoundedVector(Eigen::Vector2d(w.position, w.velocity)).cwiseProduct(x_corrected - reference_record.x);
+    referee.predict(x_corrected, reference_record, published);
   }
-  return referee.weight(options);
+  return referee.weights(options);
+}
+
+double weight_after(int steps, double corrected_error_m, double reference_error_m) {
+  return weights_after(steps, {corrected_error_m}, {reference_error_m}).position;
 }
 
 TEST(Referee, EqualPredictionsKeepNearlyAllTheWeight) {
@@ -40,8 +57,25 @@ TEST(Referee, WorsePredictionsLoseTheWeight) {
   EXPECT_GT(weight_after(3, 0.3, 0.0), 0.5) << "not on the word of three measurements";
 }
 
+TEST(Referee, WorsePositionsLoseTheirWeightWhateverTheVelocitiesSay) {
+  const Referee::Weights w = weights_after(300, {2.0, 0.0}, {0.0, 2.0});
+  EXPECT_LT(w.position, 0.01);
+  EXPECT_GT(w.velocity, 0.99);
+}
+
+TEST(Referee, WorseVelocitiesLoseTheirWeightWhateverThePositionsSay) {
+  const Referee::Weights w = weights_after(300, {0.0, 1.5}, {2.0, 0.0});
+  EXPECT_GT(w.position, 0.99);
+  EXPECT_LT(w.velocity, 0.01);
+}
+
+TEST(Referee, SmallErrorOfVelocityShowsSeveralStepsAhead) {
+  EXPECT_LT(weights_after(300, {0.0, 0.7}, {0.0, 0.0}).velocity, 0.1);
+}
+
 TEST(Referee, IsOpenBeforeTheFirstPrediction) {
-  EXPECT_EQ(Referee().weight({}), 1.0);
+  EXPECT_EQ(Referee().weights({}).position, 1.0);
+  EXPECT_EQ(Referee().weights({}).velocity, 1.0);
 }
 
 TEST(Referee, MeasurementsThatWereNotUsedDoNotCount) {
@@ -49,10 +83,13 @@ TEST(Referee, MeasurementsThatWereNotUsedDoNotCount) {
   StepRecord base;
   base.x = Eigen::Vector2d::Zero();
   base.time_s = 1.0;
-  referee.predict(0.0, Eigen::Vector2d(1e6, 0.0), Eigen::Vector2d::Zero());
+  StepRecord reference = base;
+  reference.time_s = 0.0;
+  reference.P = Eigen::Matrix2d::Identity();
+  referee.predict(Eigen::Vector2d(1e6, 0.0), reference, reference.x);
   base.status = StepStatus::coasted;
   referee.judge(base, {});
-  EXPECT_EQ(referee.weight({}), 1.0);
+  EXPECT_EQ(referee.weights({}).position, 1.0);
 }
 
 TEST(Referee, NumbersThatOverflowLoseTheWeight) {

@@ -94,6 +94,32 @@ TEST(GeographicTrack, RecordedVelocityIsTheTruthOnRequestWhereTheFileHasIt) {
       << "the slope, where the file has no velocity";
 }
 
+TEST(GeographicTrack, PositionThatIsRepeatedUntilAnotherComesIsNoGlitch) {
+  std::map<int, std::string> held;
+  for (int k = 0; k <= 30; ++k) held[k] = row(k, k - k % 5);  // a new one every 5 s
+  EXPECT_EQ(read(northbound(held), {.max_speed_mps = 150.0}).recordings.at(0).counts.glitches, 0);
+}
+
+TEST(GeographicTrack, WhatAisSendsForNotAvailableIsMissing) {
+  const Recording recording = read(northbound({{5, "5,91,181\n"}})).recordings.at(0);
+  EXPECT_EQ(recording.counts.missing, 1);
+  EXPECT_TRUE(recording.measurements[5].is_missing());
+}
+
+TEST(GeographicTrack, VelocityThatNoTargetHasIsNotBelieved) {
+  std::string text = "time_s,latitude_deg,longitude_deg,speed_kn,course_deg\n";
+  for (int k = 0; k <= 30; ++k)
+    text += fmt::format("{},{},7.5,{}\n", k, kLatitude_deg + kStep_deg * k,
+                        k == 12   ? "9999,90"
+                        : k == 20 ? "102.3,360.0"
+                                  : "100,90");
+  const Recording recording = read(text, {.max_speed_mps = 400.0, .recorded_velocity = true}).recordings.at(0);
+  EXPECT_EQ(recording.counts.wrong_velocities, 1) << "AIS's \"not available\" is missing, not wrong";
+  EXPECT_FALSE(is_scored(recording, 12));
+  EXPECT_FALSE(is_scored(recording, 20));
+  EXPECT_TRUE(is_scored(recording, 15));
+}
+
 TEST(GeographicTrack, GlitchIsMissingAndCounted) {
   const std::string text = northbound({{10, row(10, 14)}, {11, row(11, 15)}});
   const Recording recording = read(text, {.max_speed_mps = 150.0}).recordings.at(0);
@@ -109,8 +135,9 @@ TEST(GeographicTrack, GlitchIsMissingAndCounted) {
 
 TEST(GeographicTrack, FirstPositionThatIsWrongDoesNotLockOutTheRest) {
   const Recording recording = read(northbound({{0, row(0, -5)}}), {.max_speed_mps = 180.0}).recordings.at(0);
-  EXPECT_EQ(recording.counts.glitches, 8) << "until the wrong one could have got there: 5 + k steps in k seconds";
-  EXPECT_FALSE(recording.measurements[9].is_missing());
+  EXPECT_EQ(recording.counts.glitches, 1) << "it alone, not those that disagree with it";
+  EXPECT_TRUE(recording.measurements[0].is_missing());
+  EXPECT_FALSE(recording.measurements[1].is_missing());
   EXPECT_FALSE(recording.measurements[30].is_missing());
 }
 

@@ -15,7 +15,14 @@ namespace truebearing {
 enum class Role : std::uint32_t { tuning = 1, training = 2, validation = 3, evaluation = 4 };
 
 /// Streams that one run draws from; each is independent of the others.
-enum class StreamId : std::uint32_t { scenario = 1, process = 2, measurement = 3, learning = 4, test = 5, schedule = 6 };
+enum class StreamId : std::uint32_t {
+  scenario = 1,
+  process = 2,
+  measurement = 3,
+  learning = 4,
+  test = 5,
+  schedule = 6
+};
 
 /// Which Monte Carlo run: all that a simulated recording depends on besides its scenario.
 struct RunKey {

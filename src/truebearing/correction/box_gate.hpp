@@ -61,14 +61,13 @@ struct BoxGate {
     double worst = intervals.excess(found_intervals);
     if (std::isfinite(largest_disagreement)) {
       if (!std::isfinite(found_disagreement)) return 0.0;
-      worst = std::max(found_disagreement - largest_disagreement, 0.0) /
-              (disagreement_edge_fraction * largest_disagreement);
+      worst = std::max(worst, (found_disagreement - largest_disagreement) /
+                                  (disagreement_edge_fraction * largest_disagreement));
     }
     constexpr double kLeastWidth = 1e-6;  // of an input that was always the same, up to rounding
     for (Eigen::Index i = 0; i < low.size(); ++i) {
       const double outside = std::max({low[i] - inputs[i], inputs[i] - high[i], 0.0});
-      if (outside > 0.0)
-        worst = std::max(worst, outside / (edge_fraction * std::max(high[i] - low[i], kLeastWidth)));
+      if (outside > 0.0) worst = std::max(worst, outside / (edge_fraction * std::max(high[i] - low[i], kLeastWidth)));
     }
     return worst > 0.0 ? std::exp(-0.5 * worst * worst) : 1.0;
   }

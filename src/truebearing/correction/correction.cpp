@@ -88,9 +88,9 @@ void Correction::correct_record(const CorrectionInputs::Records& step, Track& tr
   const Limited limited = limit_kappa(reference.P, wanted, bounds_.kappa);
   const BoundedVector& d = limited.d;
   const bool gated = bounds_.gate && model_->gate;
-  const double g = gated ? model_->gate->weight(features_, track.extractor.intervals(),
-                                                disagreement(wanted, P_c, reference.P))
-                         : 1.0;
+  const double g =
+      gated ? model_->gate->weight(features_, track.extractor.intervals(), disagreement(wanted, P_c, reference.P))
+            : 1.0;
   const Referee::Weights w = bounds_.referee ? track.referee.weights(*bounds_.referee) : Referee::Weights{};
   const Eigen::Index n = reference.x.size(), m = n / 2;
   BoundedVector G(n);

@@ -212,8 +212,12 @@ CorrectionModel model_from(const Json& json, const std::string& name) {
 
   if (!file.at("gate").is_null()) {
     ObjectReader gate = file.object("gate");
-    model.gate = BoxGate{gate.vector("low", d), gate.vector("high", d), gate.number("edge_fraction"),
-                         gate.number_or_none("largest_disagreement"), gate.number("disagreement_edge_fraction"), {}};
+    model.gate = BoxGate{gate.vector("low", d),
+                         gate.vector("high", d),
+                         gate.number("edge_fraction"),
+                         gate.number_or_none("largest_disagreement"),
+                         gate.number("disagreement_edge_fraction"),
+                         {}};
     if (gate.has("intervals")) {  // not in models of before it was seen
       ObjectReader intervals = gate.object("intervals");
       model.gate->intervals = {intervals.number("low_s"), intervals.number("high_s"),

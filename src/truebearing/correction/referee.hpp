@@ -73,7 +73,9 @@ class Referee {
     count_ = std::min(count_ + 1, kAhead);
   }
 
-  Weights weights(const RefereeOptions& options) const { return {weight(position_, options), weight(velocity_, options)}; }
+  Weights weights(const RefereeOptions& options) const {
+    return {weight(position_, options), weight(velocity_, options)};
+  }
 
  private:
   // Of squared errors over their claims: both begin with what is expected.

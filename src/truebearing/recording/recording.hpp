@@ -38,9 +38,9 @@ struct Recording {
 
   /// What was found and mended while a log was read.
   struct Counts {
-    int missing = 0;   ///< rows without a usable measurement
-    int repeated = 0;  ///< rows identical to the one before, dropped
-    int glitches = 0;  ///< of the missing, those whose position implied an impossible speed
+    int missing = 0;           ///< rows without a usable measurement
+    int repeated = 0;          ///< rows identical to the one before, dropped
+    int glitches = 0;          ///< of the missing, those whose position implied an impossible speed
     int wrong_velocities = 0;  ///< rows that say an impossible velocity, which is not believed
   } counts;
 

@@ -71,7 +71,8 @@ TrainingSpec read_training(TableReader& table) {
   }
   training.mirror = read_mirror(table);
   if (table.has("scenario")) training.scenario = read_changed_scenario(table, "scenario");
-  if (table.has("covariance_scenario")) training.covariance_scenario = read_changed_scenario(table, "covariance_scenario");
+  if (table.has("covariance_scenario"))
+    training.covariance_scenario = read_changed_scenario(table, "covariance_scenario");
   training.learning_rate = table.number_or("learning_rate", 0.05, {0.0, 1.0, true});
   if (method == "variable_projection") {
     training.rules = static_cast<int>(table.integer("rules", 1, 256));
@@ -91,7 +92,8 @@ TrainingSpec read_training(TableReader& table) {
   return training;
 }
 
-// gate = true, false, or { quantile, edge_fraction, disagreement_quantile, disagreement_edge_fraction }.
+// gate = true, false, or { quantile, edge_fraction, disagreement_quantile, disagreement_edge_fraction,
+// longest_interval_s }.
 void read_gate(TableReader& table, CorrectionSpec& spec) {
   const toml::node* node = table.node("gate");
   if (!node || node->is_boolean()) {
@@ -105,6 +107,7 @@ void read_gate(TableReader& table, CorrectionSpec& spec) {
   box.disagreement_quantile = sub.number_or("disagreement_quantile", box.disagreement_quantile, {0.0, 0.5});
   box.disagreement_edge_fraction =
       sub.number_or("disagreement_edge_fraction", box.disagreement_edge_fraction, {0.0, 10.0, true});
+  if (sub.has("longest_interval_s")) box.longest_interval_s = sub.number("longest_interval_s", kPositive);
   sub.finish();
 }
 

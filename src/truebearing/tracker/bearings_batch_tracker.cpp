@@ -160,7 +160,8 @@ std::span<const StepRecord> BearingsBatchTracker::step(const Measurement& measur
   if (verdict == StreamGuard::Verdict::usable) add(measurement);
 
   record_.status = StepStatus::coasted;
-  if (is_due(measurement.time_s)) {
+  // An empty row is no occasion: it leaves no trace.
+  if (verdict == StreamGuard::Verdict::usable && is_due(measurement.time_s)) {
     const BatchEstimate estimate = solve();
     if (estimate.starts > 0)
       record_.batch = BatchOutcome{estimate.cost, estimate.iterations, estimate.starts, estimate.non_finite_starts};

@@ -185,8 +185,8 @@ std::optional<PriorStart> FilterTracker::start_at(const std::optional<Measuremen
   const auto* two_point = std::get_if<TwoPointStart>(&start_);
   const double dt_s = waiting ? measurement.time_s - waiting->time_s : 0.0;
   if (!two_point || !(dt_s > 0.0) || dt_s > options_.lost_after_s) return {};
-  PriorStart start = lengthened(two_point_state(*sensor_->fix(*waiting), *sensor_->fix(measurement), dt_s), n,
-                                two_point->rest_sigma);
+  PriorStart start =
+      lengthened(two_point_state(*sensor_->fix(*waiting), *sensor_->fix(measurement), dt_s), n, two_point->rest_sigma);
   add_motion(dt_s, start);
   return start;
 }
@@ -200,8 +200,8 @@ void FilterTracker::add_motion(double dt_s, PriorStart& start) {
   challenger_->begin(start.x.data(), P.data());
   if (challenger_->predict(dt_s) == StepStatus::failed) return;
   const BoundedMatrix Q = challenger_->P();
-  start.P.block(d, d, d, d) += Q.block(d, d, d, d) - (Q.block(0, d, d, d) + Q.block(d, 0, d, d)) / dt_s +
-                               Q.block(0, 0, d, d) / (dt_s * dt_s);
+  start.P.block(d, d, d, d) +=
+      Q.block(d, d, d, d) - (Q.block(0, d, d, d) + Q.block(d, 0, d, d)) / dt_s + Q.block(0, 0, d, d) / (dt_s * dt_s);
 }
 
 StepStatus FilterTracker::cross(double dt_s, TrackedState& state) const {
@@ -310,8 +310,7 @@ bool FilterTracker::is_sensible() const {
   for (int i = 0; i < n * n; ++i) sum += P[i];
   bool sensible = std::isfinite(sum);
   for (int i = 0; i < n; ++i) sensible &= P[i * (n + 1)] >= 0.0;
-  for (int i = 0; i < d; ++i)
-    sensible &= std::abs(x[i]) <= kFarthest_m && P[i * (n + 1)] <= kFarthest_m * kFarthest_m;
+  for (int i = 0; i < d; ++i) sensible &= std::abs(x[i]) <= kFarthest_m && P[i * (n + 1)] <= kFarthest_m * kFarthest_m;
   return sensible;
 }
 

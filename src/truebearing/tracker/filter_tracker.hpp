@@ -85,8 +85,8 @@ class FilterTracker : public Successor {
   double challenger_time_s_ = 0.0;
   int agreeing_ = 0;                        // of those measurements, one after another; 0: no challenger
   std::optional<Measurement> turned_away_;  // the last of them
-  std::optional<Measurement> pending_;  // the first of two positions
-  std::optional<TargetGuess> guess_;    // the latest since reset, of a tracker of bearings
+  std::optional<Measurement> pending_;      // the first of two positions
+  std::optional<TargetGuess> guess_;        // the latest since reset, of a tracker of bearings
   StepRecord record_;
   // Of the last step's output_pull.
   BoundedVector moved_;

@@ -7,6 +7,8 @@
 #include <Eigen/Core>
 #include <utility>
 
+#include "truebearing/filter/small_matrix.hpp"
+
 namespace truebearing {
 
 /// Which coefficients of a product are formed: all, or those on and below the diagonal of a symmetric result.
@@ -45,12 +47,6 @@ EIGEN_ALWAYS_INLINE bool is_known_zero(Scalar a) {
 
 }  // namespace detail
 
-template <typename Scalar, int Rows, int Cols>
-EIGEN_ALWAYS_INLINE void copy(const Eigen::Matrix<Scalar, Rows, Cols>& A, Eigen::Matrix<Scalar, Rows, Cols>& B) {
-  for (int j = 0; j < Cols; ++j)
-    for (int i = 0; i < Rows; ++i) B(i, j) = A(i, j);
-}
-
 /// C + Sign A B into C.
 template <int Sign, Part part = Part::all, typename Scalar, int Rows, int Inner, int Cols>
 EIGEN_ALWAYS_INLINE void add_product(const Eigen::Matrix<Scalar, Rows, Inner>& A,
@@ -82,15 +78,6 @@ EIGEN_ALWAYS_INLINE Eigen::Matrix<Scalar, Rows, Cols> product(const Eigen::Matri
     C(i, j) = sum;
   });
   return C;
-}
-
-/// A', as a matrix of its own.
-template <typename Scalar, int Rows, int Cols>
-EIGEN_ALWAYS_INLINE Eigen::Matrix<Scalar, Cols, Rows> transposed(const Eigen::Matrix<Scalar, Rows, Cols>& A) {
-  Eigen::Matrix<Scalar, Cols, Rows> B;
-  for (int j = 0; j < Cols; ++j)
-    for (int i = 0; i < Rows; ++i) B(j, i) = A(i, j);
-  return B;
 }
 
 }  // namespace truebearing

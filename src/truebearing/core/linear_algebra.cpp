@@ -49,8 +49,14 @@ Eigen::Matrix<double, N, 1> solve_positive(const Eigen::Matrix<double, N, N>& A,
   Eigen::Matrix<double, N, N> L;
   cholesky(A, L);
   Eigen::Matrix<double, N, 1> x = b;
-  L.template triangularView<Eigen::Lower>().solveInPlace(x);
-  L.transpose().template triangularView<Eigen::Upper>().solveInPlace(x);
+  for (int i = 0; i < N; ++i) {
+    for (int j = 0; j < i; ++j) x(i) -= L(i, j) * x(j);
+    x(i) /= L(i, i);
+  }
+  for (int i = N - 1; i >= 0; --i) {
+    for (int j = i + 1; j < N; ++j) x(i) -= L(j, i) * x(j);
+    x(i) /= L(i, i);
+  }
   return x;
 }
 

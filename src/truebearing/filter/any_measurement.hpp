@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "truebearing/core/bounded.hpp"
+#include "truebearing/filter/small_matrix.hpp"
 #include "truebearing/measurement/measurement_model.hpp"
 
 namespace truebearing {
@@ -117,12 +118,14 @@ struct MeasurementOn {
 
   Vector h(const State& x) const { return measurement.h(x.data()); }
   Jacobian H(const State& x) const {
-    Jacobian jacobian = Jacobian::Zero();
+    Jacobian jacobian;
+    fill(jacobian, 0.0);
     measurement.H(x.data(), jacobian.data());
     return jacobian;
   }
   Jacobian modified_gain(const Vector&, const State& x) const {
-    Jacobian g = Jacobian::Zero();
+    Jacobian g;
+    fill(g, 0.0);
     measurement.modified_gain(x.data(), g.data());
     return g;
   }

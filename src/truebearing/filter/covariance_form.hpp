@@ -9,6 +9,7 @@
 
 #include "truebearing/filter/factorization.hpp"
 #include "truebearing/filter/product.hpp"
+#include "truebearing/filter/small_matrix.hpp"
 #include "truebearing/filter/update.hpp"
 #include "truebearing/motion/any_motion.hpp"
 
@@ -31,7 +32,7 @@ struct CovarianceForm {
   template <int N, typename Scalar>
   EIGEN_ALWAYS_INLINE static Eigen::Matrix<Scalar, N, N> from_covariance(Eigen::Matrix<Scalar, N, N> P) {
     mirror_lower<N, Scalar>(P);
-    if (!is_positive_semidefinite<N, Scalar>(P)) P.setConstant(std::numeric_limits<Scalar>::quiet_NaN());
+    if (!is_positive_semidefinite<N, Scalar>(P)) fill(P, std::numeric_limits<Scalar>::quiet_NaN());
     return P;
   }
 
@@ -80,8 +81,8 @@ struct CovarianceForm {
     if constexpr (M == 1)  // written out: as a loop, PHt would go through memory
       detail::each<N, N>([&](int i) __attribute__((always_inline)) { update.K(i) = factors.inverse_D(0) * PHt(i); });
     else
-      for (int i = 0; i < N; ++i) update.K.row(i) = factors.solve(PHt.row(i).transpose()).transpose();
-    update.nis = update.nu.dot(factors.solve(update.nu));
+      factors.solve_rows(PHt, update.K);
+    update.nis = dot(update.nu, factors.solve(update.nu));
     return factors.valid & is_positive_semidefinite<M, Scalar>(R);
   }
 };
@@ -115,7 +116,8 @@ struct Conventional : detail::CovarianceForm {
     Eigen::Matrix<Scalar, N, M> PHt;
     const bool valid = gain(P, H, R, PHt, update);
     add_product<-1>(update.K, transposed(PHt), P);
-    P = (0.5 * (P + P.transpose())).eval();
+    for (int j = 0; j < N; ++j)
+      for (int i = 0; i <= j; ++i) P(i, j) = P(j, i) = Scalar(0.5) * (P(i, j) + P(j, i));
     return valid & is_positive_semidefinite<N, Scalar>(P);
   }
 };

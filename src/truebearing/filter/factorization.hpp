@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "truebearing/filter/small_matrix.hpp"
+
 namespace truebearing {
 
 /// A = L D L' (n x n) of a positive definite matrix by elimination; only the lower triangle of A is read.
@@ -35,10 +37,21 @@ struct Ldlt {
   EIGEN_ALWAYS_INLINE Vector solve(Vector b) const {
     for (int i = 1; i < N; ++i)
       for (int j = 0; j < i; ++j) b(i) -= L(i, j) * b(j);
-    b.array() *= inverse_D.array();
+    for (int i = 0; i < N; ++i) b(i) *= inverse_D(i);
     for (int i = N - 2; i >= 0; --i)
       for (int j = i + 1; j < N; ++j) b(i) -= L(j, i) * b(j);
     return b;
+  }
+
+  /// X = B A^-1, row by row.
+  template <int Rows>
+  EIGEN_ALWAYS_INLINE void solve_rows(const Eigen::Matrix<Scalar, Rows, N>& B,
+                                      Eigen::Matrix<Scalar, Rows, N>& X) const {
+    for (int row = 0; row < Rows; ++row) {
+      Vector b;
+      for (int i = 0; i < N; ++i) b(i) = B(row, i);
+      put(transposed(solve(b)), X, row, 0);
+    }
   }
 };
 
@@ -82,7 +95,9 @@ EIGEN_ALWAYS_INLINE bool is_positive_semidefinite(const Eigen::Matrix<Scalar, N,
 template <int N, typename Scalar>
 Eigen::Matrix<Scalar, N, N> semidefinite_root(const Eigen::Matrix<Scalar, N, N>& A) {
   const Eigen::Matrix<Scalar, N, 1> slack = semidefinite_slack<N, Scalar>(A);
-  Eigen::Matrix<Scalar, N, N> L = A.template triangularView<Eigen::Lower>();
+  Eigen::Matrix<Scalar, N, N> L;
+  for (int j = 0; j < N; ++j)
+    for (int i = 0; i < N; ++i) L(i, j) = i < j ? Scalar(0) : A(i, j);
   for (int k = 0; k < N; ++k) {
     const Scalar root = std::sqrt(L(k, k) > slack(k) ? L(k, k) : slack(k));
     for (int i = k + 1; i < N; ++i) L(i, k) /= root;
@@ -91,7 +106,7 @@ Eigen::Matrix<Scalar, N, N> semidefinite_root(const Eigen::Matrix<Scalar, N, N>&
     // A variance of zero keeps a root of zero: its slack only served the division.
     L(k, k) = A(k, k) == 0 ? Scalar(0) : root;
   }
-  if (!is_positive_semidefinite<N, Scalar>(A)) L.setConstant(std::numeric_limits<Scalar>::quiet_NaN());
+  if (!is_positive_semidefinite<N, Scalar>(A)) fill(L, std::numeric_limits<Scalar>::quiet_NaN());
   return L;
 }
 

@@ -12,6 +12,7 @@
 
 #include "truebearing/core/covariance.hpp"
 #include "truebearing/filter/filter_state.hpp"
+#include "truebearing/filter/small_matrix.hpp"
 
 namespace truebearing {
 
@@ -74,8 +75,8 @@ class FilterGroupOf final : public FilterGroup {
   std::size_t size() const override { return members_.size(); }
 
   bool begin(std::size_t i, const double* x, const double* P) override {
-    members_[i] = Filter(State(Eigen::Map<const State>(x)), Covariance(Eigen::Map<const Covariance>(P)));
-    return members_[i].x().allFinite() && members_[i].P().allFinite();
+    members_[i] = Filter(matrix_at<N, 1>(x), matrix_at<N, N>(P));
+    return is_finite(members_[i].x()) && is_finite(members_[i].P());
   }
 
   bool predict(double dt_s) override {
@@ -99,14 +100,19 @@ class FilterGroupOf final : public FilterGroup {
   }
 
   void mix(std::span<const double> weights, double sum, BoundedVector& x, BoundedMatrix& P) const override {
-    State mean = State::Zero();
-    Covariance spread = Covariance::Zero();
-    for (std::size_t i = 0; i < weights.size(); ++i) mean += weights[i] * members_[i].x();
-    mean /= sum;
+    State mean;
+    fill(mean, 0.0);
+    for (std::size_t i = 0; i < weights.size(); ++i)
+      for (int k = 0; k < N; ++k) mean(k) += weights[i] * members_[i].x()(k);
+    for (int k = 0; k < N; ++k) mean(k) /= sum;
+    Covariance spread;
+    fill(spread, 0.0);
     for (std::size_t i = 0; i < weights.size(); ++i) {
       if (weights[i] == 0.0) continue;  // it may be so far off that its spread is not finite
-      const State d = members_[i].x() - mean;
-      spread += weights[i] / sum * (members_[i].P() + d * d.transpose());
+      const double weight = weights[i] / sum;
+      const State d = minus(members_[i].x(), mean);
+      for (int col = 0; col < N; ++col)
+        for (int row = 0; row < N; ++row) spread(row, col) += weight * (members_[i].P()(row, col) + d(row) * d(col));
     }
     x = mean;
     P = spread;

@@ -9,6 +9,7 @@
 #include "truebearing/core/constants.hpp"
 #include "truebearing/filter/any_measurement.hpp"
 #include "truebearing/filter/erased_motion.hpp"
+#include "truebearing/filter/small_matrix.hpp"
 #include "truebearing/filter/tracked_state.hpp"
 #include "truebearing/filter/update.hpp"
 #include "truebearing/measurement/bearing.hpp"
@@ -67,7 +68,7 @@ class FilterState final : public TrackedState {
   }
 
   void begin(const double* x, const double* P) override {
-    filter_ = Filter(State(Eigen::Map<const State>(x)), Covariance(Eigen::Map<const Covariance>(P)));
+    filter_ = Filter(matrix_at<N, 1>(x), matrix_at<N, N>(P));
     show();
   }
 

@@ -10,6 +10,8 @@
 #include <concepts>
 
 #include "truebearing/filter/kalman.hpp"
+#include "truebearing/filter/product.hpp"
+#include "truebearing/filter/small_matrix.hpp"
 
 namespace truebearing {
 
@@ -62,9 +64,9 @@ class ModifiedGainFilter {
     add_product<-1>(update.K, R, Pgt);
     add_product<-1, Part::lower>(Pgt, transposed(update.K), P);
 
-    const State x = x_pred + update.K * update.nu;
+    const State x = plus(x_pred, product(update.K, update.nu));
     const KalmanFilter<N, Joseph, Scalar> updated(x, P);
-    const bool finite = x.allFinite() && updated.P().allFinite();
+    const bool finite = is_finite(x) && is_finite(updated.P());
     update.status = valid && finite ? StepStatus::ok : StepStatus::failed;
     if (update.status == StepStatus::ok) filter_ = updated;
     return update;

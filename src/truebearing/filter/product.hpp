@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "truebearing/core/status.hpp"
+#include "truebearing/filter/small_matrix.hpp"
 
 namespace truebearing {
 
@@ -46,12 +47,6 @@ EIGEN_ALWAYS_INLINE bool is_known_zero(Scalar a) {
 }
 
 }  // namespace detail
-
-template <typename Scalar, int Rows, int Cols>
-EIGEN_ALWAYS_INLINE void copy(const Eigen::Matrix<Scalar, Rows, Cols>& A, Eigen::Matrix<Scalar, Rows, Cols>& B) {
-  for (int j = 0; j < Cols; ++j)
-    for (int i = 0; i < Rows; ++i) B(i, j) = A(i, j);
-}
 
 /// How a filter's step ends: x and what is carried of P become the new ones, where these are valid and x is finite.
 template <typename Scalar, int N>
@@ -96,15 +91,6 @@ EIGEN_ALWAYS_INLINE Eigen::Matrix<Scalar, Rows, Cols> product(const Eigen::Matri
     C(i, j) = sum;
   });
   return C;
-}
-
-/// A', as a matrix of its own.
-template <typename Scalar, int Rows, int Cols>
-EIGEN_ALWAYS_INLINE Eigen::Matrix<Scalar, Cols, Rows> transposed(const Eigen::Matrix<Scalar, Rows, Cols>& A) {
-  Eigen::Matrix<Scalar, Cols, Rows> B;
-  for (int j = 0; j < Cols; ++j)
-    for (int i = 0; i < Rows; ++i) B(j, i) = A(i, j);
-  return B;
 }
 
 }  // namespace truebearing

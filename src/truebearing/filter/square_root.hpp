@@ -13,6 +13,7 @@
 
 #include "truebearing/filter/factorization.hpp"
 #include "truebearing/filter/product.hpp"
+#include "truebearing/filter/small_matrix.hpp"
 #include "truebearing/filter/update.hpp"
 #include "truebearing/motion/any_motion.hpp"
 
@@ -29,18 +30,25 @@ struct SquareRoot {
 
   template <int N, typename Scalar>
   static Eigen::Matrix<Scalar, N, N> to_covariance(const Eigen::Matrix<Scalar, N, N>& U) {
-    return U.lazyProduct(U.transpose());
+    Eigen::Matrix<Scalar, N, N> P;
+    for (int j = 0; j < N; ++j)
+      for (int i = 0; i <= j; ++i) {
+        P(i, j) = U(i, j) * U(j, j);
+        for (int k = j + 1; k < N; ++k) P(i, j) += U(i, k) * U(j, k);
+        P(j, i) = P(i, j);
+      }
+    return P;
   }
 
   template <int N, typename Scalar>
   static bool predict(const Eigen::Matrix<Scalar, N, N>& F, const Eigen::Matrix<Scalar, N, N>& Q,
                       Eigen::Matrix<Scalar, N, N>& U) {
     Eigen::Matrix<Scalar, N, 2 * N> array;
-    array.template leftCols<N>() = semidefinite_root<N, Scalar>(Q);
-    array.template rightCols<N>().noalias() = F * U;
+    put(semidefinite_root<N, Scalar>(Q), array, 0, 0);
+    put(product(F, U), array, 0, N);
     triangularize<N, 2 * N, Scalar>(array);
-    U = array.template rightCols<N>();
-    return is_finite<N, Scalar>(U);
+    take(array, 0, N, U);
+    return is_finite(U);
   }
 
   /// predict() across a motion whose type is not known here. x becomes f(x); `failed` leaves both as they were.
@@ -56,43 +64,57 @@ struct SquareRoot {
   /// of the size t_i^1/2, t_i = sum_j H_ij^2 P_jj + R_ii, so rounding leaves a pivot wrong by up to eps/2 t_i^1/2 /
   /// pivot, relatively.
   template <int N, int M, typename Scalar>
-  static bool update(Eigen::Matrix<Scalar, N, N>& U, const Eigen::Matrix<Scalar, M, N>& H,
-                     const Eigen::Matrix<Scalar, M, M>& R, Update<N, M, Scalar>& update) {
+  EIGEN_ALWAYS_INLINE static bool update(Eigen::Matrix<Scalar, N, N>& U, const Eigen::Matrix<Scalar, M, N>& H,
+                                         const Eigen::Matrix<Scalar, M, M>& R, Update<N, M, Scalar>& update) {
     // A relative error of up to 1/128, in the worst case; what is seen is a tenth of it.
     constexpr Scalar kLeastPivot = 64 * std::numeric_limits<Scalar>::epsilon();
-    const Eigen::Matrix<Scalar, M, 1> t = H.cwiseAbs2() * U.rowwise().squaredNorm() + R.diagonal();
+    const Eigen::Matrix<Scalar, N, 1> variance = diagonal<N, Scalar>(U);
+    Eigen::Matrix<Scalar, M, 1> t;
+    for (int i = 0; i < M; ++i) {
+      t(i) = R(i, i);
+      for (int j = 0; j < N; ++j) t(i) += H(i, j) * H(i, j) * variance(j);
+    }
 
     Eigen::Matrix<Scalar, N + M, N + M> array;
-    array.template topLeftCorner<N, N>() = U;
-    array.template topRightCorner<N, M>().setZero();
-    array.template bottomLeftCorner<M, N>().noalias() = H * U;
-    array.template bottomRightCorner<M, M>() = semidefinite_root<M, Scalar>(R);
+    put(U, array, 0, 0);
+    fill(update.K, Scalar(0));
+    put(update.K, array, 0, N);
+    put(product(H, U), array, N, 0);
+    put(semidefinite_root<M, Scalar>(R), array, N, N);
     triangularize<N + M, N + M, Scalar>(array);
-    U = array.template topLeftCorner<N, N>();
-    const Eigen::Matrix<Scalar, M, M> root = array.template bottomRightCorner<M, M>();
-    update.S.noalias() = root * root.transpose();
+    Eigen::Matrix<Scalar, M, M> root;
+    take(array, 0, 0, U);
+    take(array, 0, N, update.K);
+    take(array, N, N, root);
+    update.S = product(root, transposed(root));
 
     // K = (K S^1/2) S^-1/2 and nis = |S^-1/2 nu|^2 by substitution.
     bool valid = true;
-    update.K = array.template topRightCorner<N, M>();
     for (int k = 0; k < M; ++k) {
       valid &= root(k, k) > kLeastPivot * std::sqrt(t(k));
-      for (int i = 0; i < k; ++i) update.K.col(k) -= update.K.col(i) * root(i, k);
-      update.K.col(k) /= root(k, k);
+      for (int i = 0; i < k; ++i)
+        for (int row = 0; row < N; ++row) update.K(row, k) -= update.K(row, i) * root(i, k);
+      for (int row = 0; row < N; ++row) update.K(row, k) /= root(k, k);
     }
     Eigen::Matrix<Scalar, M, 1> whitened = update.nu;
     for (int k = M - 1; k >= 0; --k) {
       for (int i = k + 1; i < M; ++i) whitened(k) -= root(k, i) * whitened(i);
       whitened(k) /= root(k, k);
     }
-    update.nis = whitened.squaredNorm();
-    return valid & is_finite<N, Scalar>(U);
+    update.nis = dot(whitened, whitened);
+    return valid & is_finite(U);
   }
 
  private:
+  /// Of P.
   template <int N, typename Scalar>
-  static bool is_finite(const Eigen::Matrix<Scalar, N, N>& U) {
-    return (U * Scalar(0)).sum() == 0;
+  static Eigen::Matrix<Scalar, N, 1> diagonal(const Eigen::Matrix<Scalar, N, N>& U) {
+    Eigen::Matrix<Scalar, N, 1> variances;
+    for (int i = 0; i < N; ++i) {
+      variances(i) = U(i, i) * U(i, i);
+      for (int j = i + 1; j < N; ++j) variances(i) += U(i, j) * U(i, j);
+    }
+    return variances;
   }
 };
 

@@ -7,7 +7,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <type_traits>
 
@@ -15,6 +17,7 @@
 #include "truebearing/filter/covariance_form.hpp"
 #include "truebearing/filter/factorization.hpp"
 #include "truebearing/filter/product.hpp"
+#include "truebearing/filter/small_matrix.hpp"
 #include "truebearing/filter/update.hpp"
 #include "truebearing/measurement/measurement_model.hpp"
 #include "truebearing/motion/any_motion.hpp"
@@ -52,20 +55,18 @@ class UnscentedKalmanFilter {
   template <NonlinearMotionModel Motion>
   StepStatus predict(const Motion& motion, Scalar dt_s) {
     static_assert(Motion::kStates == N && std::is_same_v<typename Motion::Scalar, Scalar>);
-    const Covariance spread = deviations();
+    const Points<N> offsets = offsets_of_points();
     const State centre = motion.f(x_, dt_s);
     Points<N> d;  // from the centre first, then from the mean
-    d.col(0).setZero();
-    for (int i = 0; i < N; ++i) {
-      d.col(1 + i) = motion.f(State(x_ + spread.col(i)), dt_s) - centre;
-      d.col(1 + N + i) = motion.f(State(x_ - spread.col(i)), dt_s) - centre;
-    }
-    const State shift = kWeight * d.rowwise().sum();
-    d.colwise() -= shift;
+    fill(d, Scalar(0));
+    const PointStates X = points(offsets);
+    for (int i = 1; i < kPoints; ++i)
+      put(minus(State(motion.f(X[static_cast<std::size_t>(i)], dt_s)), centre), d, 0, i);
+    const State shift = take_mean<N>(d);
     Covariance P = motion.Q(dt_s);
     add_squares<N>(d, P);
     detail::mirror_lower<N, Scalar>(P);
-    return commit(is_positive_semidefinite<N, Scalar>(P), State(centre + shift), P, x_, P_);
+    return commit(is_positive_semidefinite<N, Scalar>(P), plus(centre, shift), P, x_, P_);
   }
 
   /// The same across a motion whose type is not known here.
@@ -84,49 +85,18 @@ class UnscentedKalmanFilter {
     static_assert(Model::kStates == N && std::is_same_v<typename Model::Scalar, Scalar>);
     constexpr int M = Model::kMeasurements;
     using Vector = Eigen::Matrix<Scalar, M, 1>;
-    using Noise = Eigen::Matrix<Scalar, M, M>;
     Update<N, M, Scalar> update;
 
-    const Covariance spread = deviations();
+    const Points<N> offsets = offsets_of_points();
     const Vector z_0 = model.h(x_);
     Points<M> d;
-    d.col(0).setZero();
-    for (int i = 0; i < N; ++i) {
-      d.col(1 + i) = model.residual(model.h(State(x_ + spread.col(i))), z_0);
-      d.col(1 + N + i) = model.residual(model.h(State(x_ - spread.col(i))), z_0);
-    }
-    const Vector shift = kWeight * d.rowwise().sum();
-    d.colwise() -= shift;
-    update.nu = model.residual(z, Vector(z_0 + shift));
-
-    const Noise R = model.R();
-    update.S = R;
-    add_squares<M>(d, update.S);
-    detail::mirror_lower<M, Scalar>(update.S);
-    Eigen::Matrix<Scalar, N, M> cross = Eigen::Matrix<Scalar, N, M>::Zero();
-    for (int i = 0; i < N; ++i)
-      cross.noalias() += (kWeight * spread.col(i)) * (d.col(1 + i) - d.col(1 + N + i)).transpose();
-
-    constexpr Scalar kLeastPivot = std::numeric_limits<Scalar>::epsilon() / Scalar(2 * detail::kTrustedError);
-    const Vector least = (kLeastPivot * update.S.diagonal()).array() + std::numeric_limits<Scalar>::min();
-    const Ldlt<M, Scalar> factors(update.S, least);
-    for (int i = 0; i < N; ++i) update.K.row(i) = factors.solve(cross.row(i).transpose()).transpose();
-    update.nis = update.nu.dot(factors.solve(update.nu));
-
-    // P - K S K' as the sum of squares that it is, over the points' errors after the update, as Joseph's form does:
-    // sum w (X - x - K d)(X - x - K d)' + K R K'.
-    Points<N> left;
-    left.col(0).setZero();
-    left.template middleCols<N>(1) = spread;
-    left.template rightCols<N>() = -spread;
-    for (int i = 0; i < kPoints; ++i) left.col(i).noalias() -= update.K * d.col(i);
-    const Eigen::Matrix<Scalar, N, M> KR = product(update.K, R);
-    Covariance P = product(KR, transposed(update.K));
-    add_squares<N>(left, P);
-    detail::mirror_lower<N, Scalar>(P);
-
-    const bool valid = factors.valid & is_positive_semidefinite<M, Scalar>(R) & is_positive_semidefinite<N, Scalar>(P);
-    update.status = commit(valid, State(x_ + update.K * update.nu), P, x_, P_);
+    fill(d, Scalar(0));
+    const PointStates X = points(offsets);
+    for (int i = 1; i < kPoints; ++i)
+      put(Vector(model.residual(Vector(model.h(X[static_cast<std::size_t>(i)])), z_0)), d, 0, i);
+    const Vector shift = take_mean<M>(d);
+    update.nu = model.residual(z, plus(z_0, shift));
+    take_update<M>(offsets, d, model.R(), update);
     return update;
   }
 
@@ -142,8 +112,45 @@ class UnscentedKalmanFilter {
   /// One column a point: the centre, then those on the one side, then those on the other.
   template <int Rows>
   using Points = Eigen::Matrix<Scalar, Rows, kPoints>;
+  using PointStates = std::array<State, static_cast<std::size_t>(kPoints)>;
 
-  Covariance deviations() const { return std::sqrt(kSpread) * semidefinite_root<N, Scalar>(P_); }
+  /// X - x: of the points around the estimate.
+  Points<N> offsets_of_points() const {
+    const Covariance L = semidefinite_root<N, Scalar>(P_);
+    const Scalar c = std::sqrt(kSpread);
+    Points<N> offsets;
+    for (int row = 0; row < N; ++row) {
+      offsets(row, 0) = 0;
+      for (int i = 0; i < N; ++i) {
+        offsets(row, 1 + i) = c * L(row, i);
+        offsets(row, 1 + N + i) = -offsets(row, 1 + i);
+      }
+    }
+    return offsets;
+  }
+
+  /// X: written at once, long before the first is read.
+  PointStates points(const Points<N>& offsets) const {
+    PointStates X;
+    for (int i = 0; i < kPoints; ++i)
+      for (int row = 0; row < N; ++row) X[static_cast<std::size_t>(i)](row) = x_(row) + offsets(row, i);
+    return X;
+  }
+
+  /// Of d, which are taken from the centre, the mean; they become those from the mean. Summed in pairs from both sides,
+  /// which nearly cancel.
+  template <int Rows>
+  static Eigen::Matrix<Scalar, Rows, 1> take_mean(Points<Rows>& d) {
+    Eigen::Matrix<Scalar, Rows, 1> mean;
+    for (int row = 0; row < Rows; ++row) {
+      Scalar sum = 0;
+      for (int i = 1; i <= N; ++i) sum += d(row, i) + d(row, N + i);
+      mean(row) = kWeight * sum;
+    }
+    for (int i = 0; i < kPoints; ++i)
+      for (int row = 0; row < Rows; ++row) d(row, i) -= mean(row);
+    return mean;
+  }
 
   /// A + sum w d d' into A.
   template <int Rows>
@@ -153,6 +160,38 @@ class UnscentedKalmanFilter {
       for (int col = 0; col < Rows; ++col)
         for (int row = 0; row < Rows; ++row) A(row, col) += weight * d(row, i) * d(col, i);
     }
+  }
+
+  /// The update, once the points have gone through h: `update` has nu, and gets the rest.
+  template <int M>
+  EIGEN_ALWAYS_INLINE void take_update(const Points<N>& offsets, const Points<M>& d,
+                                       const Eigen::Matrix<Scalar, M, M>& R, Update<N, M, Scalar>& update) {
+    copy(R, update.S);
+    add_squares<M>(d, update.S);
+    detail::mirror_lower<M, Scalar>(update.S);
+    Eigen::Matrix<Scalar, N, M> cross;
+    fill(cross, Scalar(0));
+    for (int i = 1; i <= N; ++i)
+      for (int col = 0; col < M; ++col)
+        for (int row = 0; row < N; ++row) cross(row, col) += (kWeight * offsets(row, i)) * (d(col, i) - d(col, N + i));
+
+    constexpr Scalar kLeastPivot = std::numeric_limits<Scalar>::epsilon() / Scalar(2 * detail::kTrustedError);
+    Eigen::Matrix<Scalar, M, 1> least;
+    for (int i = 0; i < M; ++i) least(i) = kLeastPivot * update.S(i, i) + std::numeric_limits<Scalar>::min();
+    const Ldlt<M, Scalar> factors(update.S, least);
+    factors.solve_rows(cross, update.K);
+    update.nis = dot(update.nu, factors.solve(update.nu));
+
+    // P - K S K' as the sum of squares that it is, over the points' errors after the update, as Joseph's form does:
+    // sum w (X - x - K d)(X - x - K d)' + K R K'.
+    Covariance P = product(product(update.K, R), transposed(update.K));
+    Points<N> left;
+    for (int i = 0; i < kPoints; ++i) put(minus(column(offsets, i), product(update.K, column(d, i))), left, 0, i);
+    add_squares<N>(left, P);
+    detail::mirror_lower<N, Scalar>(P);
+
+    const bool valid = factors.valid & is_positive_semidefinite<M, Scalar>(R) & is_positive_semidefinite<N, Scalar>(P);
+    update.status = commit(valid, plus(x_, product(update.K, update.nu)), P, x_, P_);
   }
 
   State x_;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "truebearing/core/constants.hpp"
 #include "truebearing/simulation/scenario.hpp"
 
 namespace truebearing::look_schedule_test {
@@ -70,7 +71,7 @@ TEST(LookSchedule, OutagesLastAsLongAsTheySay) {
   for (std::size_t k = 1; k < looks.size(); ++k) changes += looks[k].seen != looks[k - 1].seen;
   const auto unseen = std::count_if(looks.begin(), looks.end(), [](const Look& look) { return !look.seen; });
   EXPECT_NEAR(changes, 20, 1) << "ten rounds of 15 s";
-  EXPECT_NEAR(unseen, 50, 5);
+  EXPECT_NEAR(static_cast<double>(unseen), 50.0, 5.0);
 }
 
 TEST(LookSchedule, OneLookIsSeenWhateverIsDrawn) {

@@ -61,8 +61,8 @@ struct BoxGate {
     double worst = intervals.excess(found_intervals);
     if (std::isfinite(largest_disagreement)) {
       if (!std::isfinite(found_disagreement)) return 0.0;
-      worst = std::max(worst, (found_disagreement - largest_disagreement) /
-                                  (disagreement_edge_fraction * largest_disagreement));
+      worst = std::max(
+          worst, (found_disagreement - largest_disagreement) / (disagreement_edge_fraction * largest_disagreement));
     }
     constexpr double kLeastWidth = 1e-6;  // of an input that was always the same, up to rounding
     for (Eigen::Index i = 0; i < low.size(); ++i) {

@@ -6,6 +6,7 @@
 
 #include "truebearing/core/linear_algebra.hpp"
 #include "truebearing/tma/residual_checks.hpp"
+#include "truebearing/tracker/publishable.hpp"
 
 namespace truebearing {
 namespace {
@@ -196,6 +197,7 @@ std::span<const StepRecord> BearingsBatchTracker::step(const Measurement& measur
     record_.x[4] = source.frequency_hz;
     record_.P = covariance_with(P, source);
   }
+  if (!is_publishable(record_.x, record_.P)) record_.status = StepStatus::failed;
   return {&record_, 1};
 }
 

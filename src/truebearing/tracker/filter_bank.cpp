@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "truebearing/core/constants.hpp"
+#include "truebearing/tracker/publishable.hpp"
 
 namespace truebearing {
 namespace {}  // namespace
@@ -142,6 +143,7 @@ std::span<const StepRecord> FilterBank::publish(const Members& members) {
     record_.x.conservativeResize(n);
     record_.P.conservativeResize(n, n);
   }
+  if (!is_publishable(record_.x, record_.P)) record_.status = StepStatus::failed;
   return {&record_, 1};
 }
 

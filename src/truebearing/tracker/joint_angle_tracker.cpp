@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "truebearing/array/direction_finding.hpp"
+#include "truebearing/core/angle.hpp"
 #include "truebearing/tracker/angle_records.hpp"
 #include "truebearing/tracker/snapshot_guard.hpp"
 
@@ -69,21 +70,13 @@ std::span<const StepRecord> JointAngleTracker::step(const Measurement& measureme
     return publish(measurement, StepStatus::coasted);
   }
   real_.take(interval_, std::max(options_.moving_blocks, 1));
-  if (!started_) {
-    started_ = begin(measurement.time_s);
-    if (!started_) {
-      ++guard_.counts.failed;
-      return {};
-    }
-    used_time_s_ = measurement.time_s;
-    return publish(measurement, StepStatus::ok);
-  }
-
   const double dt_s = measurement.time_s - used_time_s_;
+  if (!started_ || is_lost(dt_s)) return begin_afresh(measurement);
   if (!hypotheses_.update(real_, dt_s, middle_of(interval_, options_.moving_blocks > 0))) {
     ++guard_.counts.failed;
     return publish(measurement, StepStatus::failed);
   }
+  if (is_lost(0.0)) return begin_afresh(measurement);
   used_time_s_ = measurement.time_s;
   if (!options_.noise_power || options_.lifetimes) {
     const JointAngleState& best = hypotheses_.best().state;
@@ -99,6 +92,31 @@ std::span<const StepRecord> JointAngleTracker::step(const Measurement& measureme
     return publish(measurement, StepStatus::ok);
   }
   return {records_.data(), tracks_.size()};
+}
+
+// All targets as new ones, from this interval.
+std::span<const StepRecord> JointAngleTracker::begin_afresh(const Measurement& measurement) {
+  tracks_.clear();
+  candidates_.clear();
+  started_ = begin(measurement.time_s);
+  if (!started_) {
+    ++guard_.counts.failed;
+    return {};
+  }
+  used_time_s_ = measurement.time_s;
+  return publish(measurement, StepStatus::ok);
+}
+
+// Whether, dt_s after the last interval that was used, a target is outside the array's sector or anywhere in it.
+bool JointAngleTracker::is_lost(double dt_s) const {
+  constexpr double kAnywhere_rad = 1.0;
+  BoundedVector x;
+  BoundedMatrix P;
+  for (int n = 0; n < static_cast<int>(tracks_.size()); ++n) {
+    marginal(hypotheses_.best().state, n, dt_s, x, P);
+    if (!(std::abs(x[0]) < 0.5 * kPi) || !(P(0, 0) < kAnywhere_rad * kAnywhere_rad)) return true;
+  }
+  return false;
 }
 
 // Angles where the spectrum of the first interval has them, or where a rotation of the array has: the likelier of the
@@ -278,7 +296,11 @@ void JointAngleTracker::add_target(const AngleLikelihood::Newcomer& heard, doubl
 std::span<const StepRecord> JointAngleTracker::publish(const Measurement& measurement, StepStatus status) {
   const AngleHypothesis& best = hypotheses_.best();
   const double lead_s = -middle_of(interval_, options_.moving_blocks > 0);
-  const double coasted_s = measurement.time_s - used_time_s_;
+  double coasted_s = measurement.time_s - used_time_s_;
+  if (is_lost(coasted_s)) {  // what is known of it is what was known then
+    coasted_s = 0.0;
+    status = StepStatus::failed;
+  }
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
     const int n = static_cast<int>(t);
     StepRecord& record = records_[t];

@@ -71,6 +71,8 @@ class JointAngleTracker final : public Tracker {
     int hits = 1, age = 0;
   };
 
+  std::span<const StepRecord> begin_afresh(const Measurement& measurement);
+  bool is_lost(double dt_s) const;
   bool begin(double time_s);
   std::optional<JointAngleState> state_from(const std::vector<double>& angles, const Eigen::MatrixXcd& R,
                                             double& log_likelihood);

@@ -250,7 +250,7 @@ TEST(FilterTracker, TargetThatJumpedIsFoundAgain) {
     if (record.status == StepStatus::rejected) ++misses;
   }
   EXPECT_GE(misses, 2) << "one that is off is an outlier";
-  EXPECT_LE(misses, 5);
+  EXPECT_LE(misses, 10) << "as promised";
   EXPECT_EQ(record.status, StepStatus::ok);
   EXPECT_NEAR(record.x[0], 3000.0, 100.0);
   EXPECT_EQ(tracker->counts().gated, misses);

@@ -1,6 +1,7 @@
 #include "truebearing/correction/correction.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "truebearing/core/covariance.hpp"
@@ -103,9 +104,15 @@ void Correction::correct_record(const CorrectionInputs::Records& step, Track& tr
   const BoundedVector x = within_kappa(reference.x, reference.P, weighted, bounds_.kappa);
   if (bounds_.referee && base.status == StepStatus::ok) track.referee.predict(reference.x + d, reference, x);
 
-  const BoundedVector A = G.cwiseSqrt(), B = (1.0 - G.array()).sqrt(), s = A.cwiseProduct(B).cwiseProduct(d);
-  const BoundedMatrix P = A.asDiagonal() * P_c * A.asDiagonal() + B.asDiagonal() * reference.P * B.asDiagonal() +
-                          s.lazyProduct(s.transpose());
+  // Written as a change of P_reference: nothing to correct leaves the covariance as it is, to the bit.
+  BoundedMatrix P(n, n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const double a = G[i] == G[j] ? G[i] : std::sqrt(G[i] * G[j]);
+      const double b = G[i] == G[j] ? 1.0 - G[i] : std::sqrt((1.0 - G[i]) * (1.0 - G[j]));
+      P(i, j) = reference.P(i, j) + a * (P_c(i, j) - reference.P(i, j)) - (1.0 - a - b) * reference.P(i, j) +
+                a * b * d[i] * d[j];
+    }
   if (!x.allFinite() || !is_covariance(P)) return;  // numbers of any size may overflow or cancel: g = 0
   corrected.x = x;
   corrected.P = P;

@@ -154,7 +154,7 @@ std::span<const StepRecord> BearingsBatchTracker::step(const Measurement& measur
   const StreamGuard::Verdict verdict = guard_.examine(measurement, has_bearing || has_frequency(measurement));
   record_.batch.reset();
   if (verdict == StreamGuard::Verdict::repeated || verdict == StreamGuard::Verdict::out_of_order) {
-    record_.status = StepStatus::rejected;
+    set_status(StepStatus::rejected, record_);
     return estimate_.found ? std::span<const StepRecord>(&record_, 1) : std::span<const StepRecord>();
   }
   if (measurement.guess) guess_ = measurement.guess;
@@ -197,7 +197,7 @@ std::span<const StepRecord> BearingsBatchTracker::step(const Measurement& measur
     record_.x[4] = source.frequency_hz;
     record_.P = covariance_with(P, source);
   }
-  if (!is_publishable(record_.x, record_.P)) record_.status = StepStatus::failed;
+  set_status(record_.status, record_);
   return {&record_, 1};
 }
 

@@ -44,7 +44,7 @@ FilterBank::Members FilterBank::another() const {
 std::span<const StepRecord> FilterBank::step(const Measurement& measurement) {
   const StreamGuard::Verdict verdict = guard_.examine(measurement, sensors_.front()->has_value(measurement));
   if (verdict == StreamGuard::Verdict::repeated || verdict == StreamGuard::Verdict::out_of_order) {
-    record_.status = StepStatus::rejected;
+    set_status(StepStatus::rejected, record_);
     return record_.x.size() == 0 ? std::span<const StepRecord>() : std::span<const StepRecord>(&record_, 1);
   }
   const bool usable = verdict == StreamGuard::Verdict::usable;
@@ -143,7 +143,7 @@ std::span<const StepRecord> FilterBank::publish(const Members& members) {
     record_.x.conservativeResize(n);
     record_.P.conservativeResize(n, n);
   }
-  if (!is_publishable(record_.x, record_.P)) record_.status = StepStatus::failed;
+  set_status(record_.status, record_);
   return {&record_, 1};
 }
 

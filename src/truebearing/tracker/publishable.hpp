@@ -1,13 +1,14 @@
 // What a tracker may publish as an estimate: anything else is `failed`, whatever a hostile log made of its arithmetic.
 #pragma once
 
-#include "truebearing/core/bounded.hpp"
+#include "truebearing/tracker/step_record.hpp"
 
 namespace truebearing {
 
-/// Whether x (n) and P (n x n) are finite and no variance is below zero.
-inline bool is_publishable(const BoundedVector& x, const BoundedMatrix& P) {
-  return x.allFinite() && P.allFinite() && (P.diagonal().array() >= 0.0).all();
+/// Gives a record its status: `failed` where x or P is not finite or a variance is below zero.
+inline void set_status(StepStatus status, StepRecord& record) {
+  const bool publishable = record.x.allFinite() && record.P.allFinite() && (record.P.diagonal().array() >= 0.0).all();
+  record.status = publishable ? status : StepStatus::failed;
 }
 
 }  // namespace truebearing

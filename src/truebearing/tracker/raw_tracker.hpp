@@ -1,6 +1,7 @@
 // The raw measurement as a tracker: x = z, P = diag(sigma^2). What a user has without any filter; the row to beat.
 #pragma once
 
+#include "truebearing/tracker/publishable.hpp"
 #include "truebearing/tracker/stream_guard.hpp"
 #include "truebearing/tracker/tracker.hpp"
 
@@ -19,6 +20,7 @@ class RawTracker final : public Tracker {
     record_.x = measurement.z;
     record_.P = sigma.cwiseAbs2().asDiagonal();
     record_.sensor = measurement.sensor;
+    set_status(StepStatus::ok, record_);
     return {&record_, 1};
   }
 

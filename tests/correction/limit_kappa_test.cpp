@@ -88,7 +88,7 @@ TEST(LimitKappa, NothingPassesTheBound) {
   RandomStream random({.seed = 21}, StreamId::test);
   const std::array<double, 12> hostile{kNaN,  kInfinity, -kInfinity, 1.7e308, -1e308, 1e200,
                                        1e154, 1e-154,    1e-308,     5e-324,  0.0,    -1e-200};
-  int limited_cases = 0, exact_cases = 0;
+  int limited_cases = 0, moved = 0;
   for (int k = 0; k < 100000; ++k) {
     const auto n = static_cast<Eigen::Index>(1 + random.index(kMaxDimension));
     const double kappa = std::pow(10.0, random.uniform(-3.0, 3.0));
@@ -111,15 +111,15 @@ TEST(LimitKappa, NothingPassesTheBound) {
     ASSERT_EQ(limited.d.size(), n);
     ASSERT_TRUE(limited.d.allFinite()) << k << "\n" << P << "\n" << d;
     ASSERT_LE(limited.distance_sigmas, kappa * (1.0 + 1e-9)) << k;
-    if (tame) {
-      ASSERT_LE(exact_distance(P, limited.d, BoundedVector::Zero(n)), kappa * (1.0 + 1e-9)) << k;
-      ++exact_cases;
+    if (!limited.d.isZero(0.0)) {
+      ASSERT_LE(exact_distance(P, limited.d, BoundedVector::Zero(n)), kappa * (1.0 + 1e-9)) << k << "\n" << P;
+      moved += tame ? 0 : 1;
     }
     limited_cases += limited.limited ? 1 : 0;
   }
   EXPECT_GT(limited_cases, 20000);
   EXPECT_LT(limited_cases, 95000) << "the bound must not be kept by allowing nothing";
-  EXPECT_EQ(exact_cases, 25000);
+  EXPECT_GT(moved, 30000) << "of the 75000 hostile ones";
 }
 
 // References of filters that were told tiny standard deviations: ill-conditioned, singular, and far below the last digit

@@ -145,6 +145,19 @@ TEST(PlaneCorrection, ModelFileKeepsEverything) {
   EXPECT_EQ(loaded.inflation.size(), 0);
 }
 
+TEST(PlaneCorrection, ModelFileKeepsTheIntervalsThatWereTaughtAndRefusesThoseThatAreNone) {
+  CorrectionModel model = one_second_model();
+  for (const IntervalBox& intervals : {IntervalBox{0.5, 3.0, 2.0}, IntervalBox{0.5, kInfinity, 0.0}}) {
+    model.gate->intervals = intervals;
+    EXPECT_EQ(parse_model(model_text(model), "model.json").gate->intervals, intervals);
+  }
+  for (const IntervalBox& intervals :
+       {IntervalBox{-1.0, 3.0, 0.0}, IntervalBox{4.0, 3.0, 0.0}, IntervalBox{1.0, 3.0, -1.0}}) {
+    model.gate->intervals = intervals;
+    EXPECT_THROW(parse_model(model_text(model), "model.json"), InputError);
+  }
+}
+
 TEST(PlaneCorrection, MomentsThatAreNoCovarianceAreRefused) {
   CorrectionModel model = plane_model(6);
   model.moments(2, 0) = -1.0;

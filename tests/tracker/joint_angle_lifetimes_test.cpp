@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -51,6 +52,33 @@ int began(const Followed& followed) {
   int count = 0;
   for (const TrackEvent& event : followed.events) count += event.kind == TrackEvent::Kind::track_began;
   return count;
+}
+
+TEST(JointAngleTracker, TargetsThatALongGapHasLostAreBegunAnew) {
+  const Recording recording = simulated("[[targets]]\nstart_deg = -20.0\n[[targets]]\nstart_deg = 30.0\n");
+  JointAngleOptions without_lifetimes = options();
+  without_lifetimes.lifetimes.reset();
+  JointAngleTracker tracker(without_lifetimes);
+  constexpr std::size_t kGapAt = 30;
+  for (std::size_t k = 0; k < kGapAt; ++k) ASSERT_EQ(tracker.step(recording.measurements[k]).size(), 2u);
+  Measurement silent = recording.measurements[kGapAt];
+  silent.time_s += 900.0;
+  silent.snapshots.reset();
+  for (const StepRecord& record : tracker.step(silent)) {
+    EXPECT_EQ(record.status, StepStatus::failed) << "not known any more";
+    EXPECT_LT(std::abs(record.x[0]), 0.5 * kPi);
+  }
+  for (std::size_t k = kGapAt; k < recording.measurements.size(); ++k) {
+    Measurement later = recording.measurements[k];
+    later.time_s += 1000.0;
+    const auto records = tracker.step(later);
+    ASSERT_EQ(records.size(), 2u);
+    for (const StepRecord& record : records) {
+      EXPECT_EQ(record.status, StepStatus::ok);
+      EXPECT_GE(record.track, 2) << "another than before";
+      EXPECT_LT(std::min(std::abs(record.x[0] + radians(20.0)), std::abs(record.x[0] - radians(30.0))), radians(1.0));
+    }
+  }
 }
 
 constexpr const char* kOneAndAGuest =

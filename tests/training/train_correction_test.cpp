@@ -62,6 +62,28 @@ TEST(TrainCorrection, MirroredBoxIsSymmetricInWhatAMirrorTurns) {
 }
 
 // kappa, gate and referee may change without a new training: nothing in the model but its provenance depends on them.
+TEST(TrainCorrection, GateRemembersTheIntervalsThatWereTaughtUpToWhatTheStudyPromises) {
+  const TemporaryFolder folder;
+  const auto intervals = [&](const std::string& study) {
+    return train(Study::load(write_study(folder, study)), 5, 0).gate->intervals;
+  };
+  const IntervalBox own = intervals(kStudy);
+  EXPECT_NEAR(own.low_s, 1.0, 1e-9);
+  EXPECT_NEAR(own.high_s, 1.0, 1e-9);
+  EXPECT_EQ(own.longest_coast_s, 0.0);
+
+  const std::string mixed = replaced(kStudy, "mirror = true\n",
+                                     "mirror = true\nscenario = { looks = { period_factor = { uniform = [0.5, 3.0] }, "
+                                     "missed = 0.5, empty_rows = true } }\n");
+  const IntervalBox taught = intervals(mixed);
+  EXPECT_GE(taught.low_s, 0.5);
+  EXPECT_LT(taught.low_s, 0.9);
+  EXPECT_GT(taught.high_s, 6.0) << "with half the rows missing";
+  EXPECT_GT(taught.longest_coast_s, 3.0);
+  const std::string promised = replaced(mixed, "kappa = 3.0\n", "kappa = 3.0\ngate = { longest_interval_s = 4.0 }\n");
+  EXPECT_EQ(intervals(promised).high_s, 4.0);
+}
+
 TEST(TrainCorrection, BoundsOfTheStudyAreNoPartOfTheTraining) {
   const TemporaryFolder folder;
   CorrectionModel bounded = train(Study::load(write_study(folder)), 5, 0);

@@ -65,6 +65,12 @@ void CorrectionModel::validate() const {
             "a number in (0, 10]");
     require(gate->edge_fraction > 0.0 && gate->edge_fraction <= 10.0, "gate.edge_fraction",
             fmt::format("is {}", gate->edge_fraction), "a number in (0, 10]");
+    const IntervalBox& intervals = gate->intervals;
+    require(
+        intervals.low_s >= 0.0 && intervals.low_s <= intervals.high_s && intervals.longest_coast_s >= 0.0,
+        "gate.intervals",
+        fmt::format("are {} to {} s, a coast of {} s", intervals.low_s, intervals.high_s, intervals.longest_coast_s),
+        "0 <= low_s <= high_s, longest_coast_s >= 0");
   }
 }
 

@@ -220,8 +220,8 @@ CorrectionModel model_from(const Json& json, const std::string& name) {
                          {}};
     if (gate.has("intervals")) {  // not in models of before it was seen
       ObjectReader intervals = gate.object("intervals");
-      model.gate->intervals = {intervals.number("low_s"), intervals.number("high_s"),
-                               intervals.number("longest_coast_s")};
+      model.gate->intervals = {intervals.number("low_s"), intervals.number_or_none("high_s"),
+                               intervals.number_or_none("longest_coast_s")};
       intervals.finish();
     }
     gate.finish();
@@ -304,8 +304,8 @@ std::string model_text(const CorrectionModel& model) {
                     {"disagreement_edge_fraction", model.gate->disagreement_edge_fraction}};
   if (model.gate && model.gate->intervals != IntervalBox{})
     json["gate"]["intervals"] = {{"low_s", model.gate->intervals.low_s},
-                                 {"high_s", model.gate->intervals.high_s},
-                                 {"longest_coast_s", model.gate->intervals.longest_coast_s}};
+                                 {"high_s", limit_json(model.gate->intervals.high_s)},
+                                 {"longest_coast_s", limit_json(model.gate->intervals.longest_coast_s)}};
   if (model.design.covariance_moments) json["covariance"] = kMoments;
   json["rules"] = OrderedJson::array();
   for (Eigen::Index j = 0; j < parameters.centres.rows(); ++j) {

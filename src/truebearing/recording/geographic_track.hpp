@@ -43,7 +43,8 @@ struct GeographicTracks {
 /// Is this a regular file of CSV whose header names latitude_deg? Throws InputError where it cannot be read.
 bool is_geographic_track(const std::filesystem::path& path);
 
-/// Empty cells make a row missing, and so does what AIS sends for "not available" (latitude 91, longitude 181); a row with the time and place of the target's last is dropped; both are counted.
+/// Empty cells make a row missing, and so does what AIS sends for "not available" (latitude 91, longitude 181); a row
+/// with the time and place of the target's last is dropped; both are counted.
 /// Throws InputError that names the row: a time that is missing or decreases within a target, a latitude outside
 /// [-90, 90], a longitude outside [-180, 360]; and where no target has kFewestRows usable rows.
 GeographicTracks read_geographic_tracks(const std::filesystem::path& path, const GeographicTrackOptions& options = {});

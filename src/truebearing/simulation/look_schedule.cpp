@@ -11,7 +11,7 @@ std::vector<Look> LookSchedule::draw(double period_s, int count, const RunKey& k
   const double period = period_factor.draw(stream) * period_s;
   const double missed_share = missed.draw(stream);
   const bool has_outages = stream.uniform() < outage_share;
-  // The first outage is under way at a random part of a round.
+  // A run begins somewhere between two outages.
   bool in_outage = false;
   double change_s = has_outages ? seen_s.draw(stream) * stream.uniform() : kInfinity;
 

@@ -99,7 +99,6 @@ std::span<const StepRecord> FilterTracker::step(const Measurement& measurement) 
 
 void FilterTracker::reset() {
   guard_ = {};
-  gate_ = Gate(options_.gate_nis);
   record_ = {};
   record_.space = space_;
   record_.track = -1;
@@ -110,8 +109,8 @@ void FilterTracker::reset() {
 
 void FilterTracker::take_over(double time_s, const BoundedVector& x, const BoundedMatrix& P) {
   const auto* hand_over = std::get_if<HandOverStart>(&start_);
+  forget();
   begin(lengthened({x, P}, state_->size(), hand_over ? hand_over->rest_sigma : 0.0));
-  pending_.reset();
   used_time_s_ = time_s;
 }
 
@@ -134,14 +133,24 @@ void FilterTracker::begin(const PriorStart& start) {
 
 void FilterTracker::restart(double time_s) {
   ++record_.track;
-  pending_.reset();
-  turned_away_.reset();
-  agreeing_ = 0;
-  failed_in_row_ = 0;
-  gate_ = Gate(options_.gate_nis);
-  begun_ = lost_ = false;
+  forget();
+  begun_ = false;
   if (const auto* prior = std::get_if<PriorStart>(&start_)) begin(*prior);
   used_time_s_ = time_s;
+}
+
+// What came before a state that begins anew.
+void FilterTracker::forget() {
+  pending_.reset();
+  gate_ = Gate(options_.gate_nis);
+  lost_ = false;
+  failed_in_row_ = 0;
+  forget_challenger();
+}
+
+void FilterTracker::forget_challenger() {
+  turned_away_.reset();
+  agreeing_ = 0;
 }
 
 // Of positions, the first of two measurements waits; the second makes the state. Where both are of one time, the later
@@ -241,14 +250,12 @@ StepStatus FilterTracker::update(const Measurement& measurement) {
   failed_in_row_ = 0;
   switch (gate_.judge(innovation.nis)) {
     case Gate::Verdict::passes:
-      agreeing_ = 0;
-      turned_away_.reset();
+      forget_challenger();
       break;
     case Gate::Verdict::passes_widened:
       predict_again();
       widen(*state_, innovation.nis / gate_.threshold());
-      agreeing_ = 0;
-      turned_away_.reset();
+      forget_challenger();
       if (state_->update(taken, {innovation.nu, innovation.S, gain, innovation.nis}) == StepStatus::failed) {
         predict_again();
         return StepStatus::rejected;
@@ -264,9 +271,7 @@ StepStatus FilterTracker::update(const Measurement& measurement) {
       }
       record_.innovation.reset();
       state_.swap(challenger_);
-      agreeing_ = 0;
-      turned_away_.reset();
-      gate_ = Gate(options_.gate_nis);
+      forget();
       return StepStatus::ok;
     }
   }

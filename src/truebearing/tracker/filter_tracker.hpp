@@ -50,6 +50,8 @@ class FilterTracker : public Successor {
   void check() const;
   void begin(const PriorStart& start);
   void restart(double time_s);
+  void forget();
+  void forget_challenger();
   std::span<const StepRecord> start_from(const Measurement& measurement);
   std::optional<PriorStart> start_at(const std::optional<Measurement>& waiting, const Measurement& measurement);
   void add_motion(double dt_s, PriorStart& start);

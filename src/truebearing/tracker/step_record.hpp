@@ -28,7 +28,7 @@ struct Innovation {
 /// What a correction did: how far the gate was open, whether kappa limited it, how far it moved the reference; and the
 /// base estimate that it started from.
 struct CorrectionOutcome {
-  double gate = 0.0;             ///< g in [0, 1]
+  double gate = 0.0;             ///< g in [0, 1]; the mean over the state where positions and velocities have their own
   bool limited = false;          ///< limit_kappa shortened the correction, or turned a non-finite one into zero
   double distance_sigmas = 0.0;  ///< Mahalanobis distance of the published estimate from the reference, reference P
   BoundedVector base_x;          ///< (n); empty where the base gave no estimate, and the reference stands

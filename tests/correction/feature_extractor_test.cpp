@@ -9,6 +9,7 @@
 #include "truebearing/filter/kalman.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
 #include "truebearing/tracker/filter_tracker_of.hpp"
+#include "truebearing/tracker/polar_sensor.hpp"
 #include "truebearing/tracker/position_sensor.hpp"
 
 namespace truebearing::feature_extractor_test {
@@ -357,11 +358,11 @@ TEST(Feature, ParityIsWhatAMirroredTargetDoes) {
 class PlaneTrackers {
  public:
   using Motion = ConstantVelocity<2, DiscreteWhiteNoise>;
-  using Filter = FilterTrackerOf<KalmanFilter<4>, Motion, PositionSensor<2>>;
 
-  explicit PlaneTrackers(std::vector<FeatureSpec> specs)
-      : base_(plane_space(), Motion{{8.0}}, {{100.0, 100.0}, 1.0}, TwoPointStart{}),
-        companion_(plane_space(), Motion{{20.0}}, {{100.0, 100.0}, 1.0}, TwoPointStart{}),
+  explicit PlaneTrackers(std::vector<FeatureSpec> specs,
+                         std::unique_ptr<AnySensor> sensor = sensor_of(PositionSensor<2>{{100.0, 100.0}, 1.0}))
+      : base_(plane_space(), state_of<KalmanFilter<4>>(Motion{{8.0}}), sensor->fresh(), TwoPointStart{}),
+        companion_(plane_space(), state_of<KalmanFilter<4>>(Motion{{20.0}}), sensor->fresh(), TwoPointStart{}),
         extractor_(std::move(specs), plane_space(), Frame::track, [&](const std::string&) { return base_.blocks(); }) {}
 
   bool step(double time_s, const Eigen::Vector2d& z, FeatureExtractor::Features& features) {
@@ -374,7 +375,7 @@ class PlaneTrackers {
   }
 
  private:
-  Filter base_, companion_;
+  FilterTracker base_, companion_;
   FeatureExtractor extractor_;
 };
 
@@ -435,10 +436,30 @@ TEST(TrackFrame, FeaturesDoNotDependOnTheCourse) {
   for (const Eigen::Vector2d& z : turning_target()) {
     time_s += 1.0;
     if (!trackers.step(time_s, z, a) | !turned.step(time_s, R * z, b)) continue;
-    // Averages are of innovations by their own deviations, which here are the same on both axes.
     for (Eigen::Index i = 0; i < a.size(); ++i)
       EXPECT_NEAR(b[i], a[i], 1e-9 * (1.0 + std::abs(a[i]))) << describe(specs[static_cast<std::size_t>(i)]);
   }
+}
+
+TEST(TrackFrame, FeaturesDoNotDependOnTheCourseWhereErrorsAreCorrelated) {
+  constexpr double kTurn_rad = 0.8;
+  const std::vector<FeatureSpec> specs = plane_features();
+  const auto radar = sensor_of(ConvertedSensor{{.sigma = {50.0, 0.05}}});
+  PlaneTrackers trackers(specs, radar->fresh()), turned(specs, radar->fresh());
+  FeatureExtractor::Features a, b;
+  double time_s = 0.0;
+  int compared = 0;
+  for (const Eigen::Vector2d& z : turning_target()) {
+    time_s += 1.0;
+    const Eigen::Vector2d polar(z.norm(), std::atan2(z.x(), z.y()));
+    if (!trackers.step(time_s, polar, a) | !turned.step(time_s, polar + Eigen::Vector2d(0.0, kTurn_rad), b)) continue;
+    ++compared;
+    for (std::size_t i = 0; i < specs.size(); ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      EXPECT_NEAR(b[k], a[k], 1e-9 * (1.0 + std::abs(a[k]))) << describe(specs[i]);
+    }
+  }
+  EXPECT_GT(compared, 50);
 }
 
 TEST(TrackFrame, RotationIsItsOwnInverseAndPutsTheVelocityAlong) {

@@ -118,6 +118,27 @@ TEST(ConvertRangeBearing, IsUnbiasedAndHonestAboutItsErrors) {
   }
 }
 
+TEST(ConvertedCovariance, IsTheSpreadAboutTheTruePlace) {
+  constexpr int kDraws = 40000;
+  const double sigma_m = 50.0, range_m = 20e3;
+  const Eigen::Vector2d truth_m = range_m * Eigen::Vector2d(std::sin(2.1), std::cos(2.1));
+  for (const double sigma_deg : {0.3, 3.0, 6.0}) {
+    RandomStream random({29, Role::evaluation, 0}, StreamId::test);
+    Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+    for (int draw = 0; draw < kDraws; ++draw) {
+      const double z_m = range_m + sigma_m * random.normal(), z_rad = 2.1 + radians(sigma_deg) * random.normal();
+      const Eigen::Vector2d error_m =
+          convert_range_bearing({z_m, z_rad}, sigma_m, radians(sigma_deg), {0.0, 0.0}).position_m - truth_m;
+      spread += error_m * error_m.transpose() / kDraws;
+    }
+    const Eigen::Matrix2d R = converted_covariance(truth_m, sigma_m, radians(sigma_deg));
+    const Eigen::Vector2d along = truth_m / range_m, across(along.y(), -along.x());
+    EXPECT_NEAR(along.dot(spread * along) / along.dot(R * along), 1.0, 0.05) << sigma_deg << " deg";
+    EXPECT_NEAR(across.dot(spread * across) / across.dot(R * across), 1.0, 0.05) << sigma_deg << " deg";
+    EXPECT_NEAR(along.dot(R * across), 0.0, 1e-12 * R.trace()) << sigma_deg << " deg";
+  }
+}
+
 TEST(ConvertRangeBearing, PlainConversionIsCaught) {
   const Errors errors = converted_errors(Conversion::plain, 8e3, 3.0);
   EXPECT_GT(mean_in_margins(errors.along_m, 0.0), 1.0);

@@ -55,6 +55,20 @@ void check(const FeatureSpec& feature, const StateSpace& space, const StateSpace
   if (needs.blocks.neighbour && !blocks.neighbour) throw missing("neighbour");
 }
 
+// e of an innovation: each component over its own standard deviation. In a frame that turns with the target it must not
+// matter which way the axes of the plane point, so that there e = S^-1/2 nu with the symmetric root, which turns as nu
+// does; where the components are not correlated the two are the same.
+BoundedVector normalised(const Innovation& innovation, Frame frame) {
+  const BoundedMatrix& S = innovation.S;
+  if (frame == Frame::state || S.rows() != 2 || S(0, 1) == 0.0)
+    return innovation.nu.cwiseQuotient(S.diagonal().cwiseSqrt());
+  // S^1/2 = (S + s I) / t with s = sqrt(det S), t = sqrt(tr S + 2 s).
+  const double s = std::sqrt(std::max(S(0, 0) * S(1, 1) - S(0, 1) * S(1, 0), 0.0)), t = std::sqrt(S.trace() + 2.0 * s);
+  const double a = S(0, 0) + s, b = S(0, 1), c = S(1, 1) + s, scale = t / (a * c - b * b);
+  return scale *
+         Eigen::Vector2d(c * innovation.nu[0] - b * innovation.nu[1], a * innovation.nu[1] - b * innovation.nu[0]);
+}
+
 constexpr double kLeastRange_m = 1.0;
 
 // Of states that have no plane, and no feature that wants this, it is some number.
@@ -124,7 +138,7 @@ void FeatureExtractor::extract(const StepRecord& base, std::span<const StepRecor
 }
 
 // Takes from a step in which the measurement was used what later steps want to know of it.
-void FeatureExtractor::remember(Term& term, const StepRecord& record) {
+void FeatureExtractor::remember(Term& term, const StepRecord& record) const {
   if (record.status != StepStatus::ok || !record.innovation) return;
   const Innovation& innovation = *record.innovation;
   BoundedVector& memory = term.memory;
@@ -139,11 +153,10 @@ void FeatureExtractor::remember(Term& term, const StepRecord& record) {
     case FeatureKind::innovation:
     case FeatureKind::innovation_average: {
       const double alpha = term.kind == FeatureKind::innovation ? 1.0 : term.alpha;
-      if (memory.size() != innovation.nu.size()) memory = BoundedVector::Zero(innovation.nu.size());
-      for (Eigen::Index i = 0; i < memory.size(); ++i) {
-        const double e = innovation.nu[i] / std::sqrt(innovation.S(i, i));
-        memory[i] = alpha == 1.0 ? e : memory[i] + alpha * (e - memory[i]);
-      }
+      const BoundedVector e = normalised(innovation, frame_);
+      if (memory.size() != e.size()) memory = BoundedVector::Zero(e.size());
+      for (Eigen::Index i = 0; i < memory.size(); ++i)
+        memory[i] = alpha == 1.0 ? e[i] : memory[i] + alpha * (e[i] - memory[i]);
       break;
     }
     case FeatureKind::log_nis_average:

@@ -55,7 +55,7 @@ class FeatureExtractor {
   };
 
   void begin_track(const StepRecord& base);
-  static void remember(Term& term, const StepRecord& record);
+  void remember(Term& term, const StepRecord& record) const;
   double value(const Term& term, const StepRecord& base, const StepRecord* companion) const;
 
   Frame frame_ = Frame::state;

@@ -13,7 +13,8 @@ enum class FeatureKind {
   gain,      ///< the gain of a component on the measured component that it belongs to: K[component, 0] on a line
   residual,  ///< z - x[component], after the update
   prediction_difference,  ///< x_pred[component] - x[component]
-  innovation,             ///< e_i = nu_i / sqrt(S_ii), the normalised innovation
+  innovation,             ///< e_i = nu_i / sqrt(S_ii), the normalised innovation; in a frame that turns with the target
+                          ///< e = S^-1/2 nu
   innovation_average,     ///< a <- (1 - alpha) a + alpha e, divided by sqrt(alpha / (2 - alpha)), its deviation if e is
                           ///< white
   log_nis_average,        ///< ln(offset + a), a <- (1 - alpha) a + alpha NIS

@@ -1,6 +1,6 @@
 // Range and bearing from a site to a state [east, north, v_east, v_north] in m and m/s: z = [range_m, bearing_rad] (m =
 // 2, n = 4), bearings clockwise from North, R = diag(sigma^2). And the conversion of such a z to an unbiased position:
-// Mo, Song, Zhou, Sun and Bar-Shalom 1998.
+// Mo, Song, Zhou, Sun and Bar-Shalom 1998, and for a track Bordonaro, Willett and Bar-Shalom 2014.
 #pragma once
 
 #include <Eigen/Core>
@@ -81,6 +81,22 @@ inline ConvertedPosition convert_range_bearing(const Eigen::Vector2d& z, double 
   converted.position_m = site_m + std::exp(0.5 * bearing_variance) * z(0) * along;
   converted.R_m2 = along_variance * along * along.transpose() + across_variance * across * across.transpose();
   return converted;
+}
+
+/// R of a converted position (2 x 2), given where the target is, offset_m (2) from the site. A filter that knows that
+/// better than one measurement tells it must not take R from the measurement: it would lie along the bearing as it was
+/// measured, so that gain and error go together and every range comes out longer than it is.
+inline Eigen::Matrix2d converted_covariance(const Eigen::Vector2d& offset_m, double sigma_range_m,
+                                            double sigma_bearing_rad) {
+  const double range2 = offset_m.squaredNorm(), range_variance = sigma_range_m * sigma_range_m;
+  const Eigen::Vector2d along =
+      range2 > 0.0 ? Eigen::Vector2d(offset_m / std::sqrt(range2)) : Eigen::Vector2d(0.0, 1.0);
+  const Eigen::Vector2d across(along.y(), -along.x());
+  const double e = std::expm1(-sigma_bearing_rad * sigma_bearing_rad);
+  const double half_loss = -0.5 * e * (e + 2.0);
+  const double along_variance = (0.5 * range2 * e * e + range_variance * (1.0 - half_loss)) / (1.0 + e);
+  const double across_variance = (range2 + range_variance) * half_loss / (1.0 + e);
+  return along_variance * along * along.transpose() + across_variance * across * across.transpose();
 }
 
 }  // namespace truebearing

@@ -7,7 +7,7 @@
 
 #include "truebearing/core/angle.hpp"
 #include "truebearing/tracker/bearing_sensor.hpp"
-#include "truebearing/tracker/plane_sensor.hpp"
+#include "truebearing/tracker/polar_sensor.hpp"
 #include "truebearing/tracker/position_sensor.hpp"
 #include "truebearing/tracker/range_bearing_rate_sensor.hpp"
 
@@ -36,7 +36,7 @@ double read_position_sigma(TableReader& table) {
 std::unique_ptr<AnySensor> read_position(const Reading& reading) {
   const double sigma_m = read_position_sigma(reading.table), factor = read_factor(reading);
   if (reading.space == line_space()) return sensor_of(PositionSensor<1>{PositionSensor<1>::Sigma(sigma_m), factor});
-  return sensor_of(PlaneSensor{{sigma_m, sigma_m}, factor, false, Eigen::Vector2d::Zero()});
+  return sensor_of(PositionSensor<2>{{sigma_m, sigma_m}, factor});
 }
 
 PolarSensor read_polar(const Reading& reading) {
@@ -56,8 +56,7 @@ std::unique_ptr<AnySensor> read_range_bearing(const Reading& reading) {
 }
 
 std::unique_ptr<AnySensor> read_converted(const Reading& reading) {
-  const PolarSensor polar = read_polar(reading);
-  return sensor_of(PlaneSensor{polar.sigma, polar.sigma_factor, true, polar.site_m});
+  return sensor_of(ConvertedSensor{read_polar(reading)});
 }
 
 std::unique_ptr<AnySensor> read_range_bearing_rate(const Reading& reading) {

@@ -4,6 +4,7 @@
 //     Model::Vector value(const Measurement&)   what that model calls z
 //     Measured measured() const                 what it takes (measurement/measured.hpp)
 //     static constexpr bool kMeasuresPosition   z is the first components of the state
+//     Model model(const Measurement&, const Prediction&)   in place of the first, where R depends on where the target is
 // and, where it has them, has_value() (a part of z will do), fix() (a position to begin with), sight() and believe() (a
 // bearing to begin with). SensorOf makes an AnySensor of it.
 #pragma once
@@ -17,6 +18,7 @@
 #include "truebearing/measurement/measured.hpp"
 #include "truebearing/measurement/measurement.hpp"
 #include "truebearing/tracker/start.hpp"
+#include "truebearing/tracker/step_record.hpp"
 
 namespace truebearing {
 
@@ -39,8 +41,11 @@ class AnySensor {
   virtual bool tells_bearing() const = 0;   ///< sight() and believe() do
   /// True where the model can use the measurement, or a part of it.
   virtual bool has_value(const Measurement& measurement) const = 0;
-  /// z, R and the model of that measurement, valid until the next call. Only of one that has a value.
-  virtual const AnyMeasurement& take(const Measurement& measurement) = 0;
+  /// True where take() looks at what is expected.
+  virtual bool heeds_expected() const = 0;
+  /// z, R and the model of that measurement to a track that expects its target there, valid until the next call. Only of
+  /// one that has a value.
+  virtual const AnyMeasurement& take(const Measurement& measurement, const Prediction& expected) = 0;
   /// The position that it measures, directly or converted.
   virtual std::optional<PositionFix> fix(const Measurement& measurement) const = 0;
   virtual std::optional<Sight> sight(const Measurement& measurement) const = 0;
@@ -69,8 +74,12 @@ class SensorOf final : public AnySensor {
     else
       return !measurement.is_missing() && measurement.z.size() == Model::kMeasurements;
   }
-  const AnyMeasurement& take(const Measurement& measurement) override {
-    taken_.set(sensor_.model(measurement), sensor_.value(measurement));
+  bool heeds_expected() const override { return kHeedsExpected; }
+  const AnyMeasurement& take(const Measurement& measurement, const Prediction& expected) override {
+    if constexpr (kHeedsExpected)
+      taken_.set(sensor_.model(measurement, expected), sensor_.value(measurement));
+    else
+      taken_.set(sensor_.model(measurement), sensor_.value(measurement));
     return taken_;
   }
 
@@ -96,6 +105,10 @@ class SensorOf final : public AnySensor {
   std::unique_ptr<AnySensor> fresh() const override { return std::make_unique<SensorOf>(sensor_); }
 
  private:
+  static constexpr bool kHeedsExpected =
+      requires(const Sensor& sensor, const Measurement& m, const Prediction& expected) {
+    sensor.model(m, expected);
+  };
   static constexpr bool kTellsPosition = requires(const Sensor& sensor, const Measurement& m) { sensor.fix(m); };
   static constexpr bool kTellsBearing = requires(const Sensor& sensor, const Measurement& m) { sensor.sight(m); };
 

@@ -119,7 +119,11 @@ StepStatus FilterBank::predict(double dt_s) {
 
 // `failed` where no member can explain the measurement in finite numbers. One that cannot, where others can, has lost.
 StepStatus FilterBank::weigh(const Measurement& measurement) {
-  for (std::size_t s = 0; s < sensors_.size(); ++s) taken_[s] = &sensors_[s]->take(measurement);
+  if (sensors_.front()->heeds_expected()) {
+    publish(shown_);
+    expected_ = {record_.x, record_.P};
+  }
+  for (std::size_t s = 0; s < sensors_.size(); ++s) taken_[s] = &sensors_[s]->take(measurement, expected_);
   shown_.filters->update(taken_, sensor_of_, gained_);
   double largest = -kInfinity;
   for (std::size_t i = 0; i < gained_.size(); ++i) {

@@ -77,6 +77,7 @@ class FilterBank final : public Tracker {
   StepRecord record_;
   std::vector<std::size_t> sensor_of_;  // of each hypothesis
   // Of one step.
+  Prediction expected_;                       // of all members together
   std::vector<const AnyMeasurement*> taken_;  // by each sensor
   std::vector<double> gained_;
   std::vector<double> weights_;

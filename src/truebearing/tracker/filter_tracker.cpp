@@ -234,7 +234,7 @@ StepStatus FilterTracker::update(const Measurement& measurement) {
     state_->assign(*kept_);
     cross(measurement.time_s - used_time_s_, *state_);
   };
-  const AnyMeasurement& taken = sensor_->take(measurement);
+  const AnyMeasurement& taken = sensor_->take(measurement, *record_.prediction);
   Innovation& innovation = record_.innovation.emplace(Unfilled());
   BoundedMatrix& gain = record_.gain.emplace();
   const StepStatus status = state_->update(taken, {innovation.nu, innovation.S, gain, innovation.nis});
@@ -286,8 +286,12 @@ bool FilterTracker::challenge(const Measurement& measurement, double nis) {
   constexpr int kAgreeing = 3;
   const int first = std::holds_alternative<TwoPointStart>(start_) ? 2 : 1;  // agreeing ones that make a challenger
   StateUpdate update;
+  const auto challenger_takes = [&] {
+    const Prediction expected{challenger_->x(), challenger_->P()};
+    return challenger_->update(sensor_->take(measurement, expected), update) == StepStatus::ok;
+  };
   if (agreeing_ >= first && cross(measurement.time_s - challenger_time_s_, *challenger_) == StepStatus::ok &&
-      challenger_->update(sensor_->take(measurement), update) == StepStatus::ok && update.nis <= gate_.threshold()) {
+      challenger_takes() && update.nis <= gate_.threshold()) {
     ++agreeing_;
   } else if (const std::optional<PriorStart> start = start_at(turned_away_, measurement)) {
     challenger_->begin(start->x.data(), start->P.data());
@@ -296,7 +300,7 @@ bool FilterTracker::challenge(const Measurement& measurement, double nis) {
     // Measurements begin no track: what was predicted, with the covariance that lets this one pass.
     challenger_->assign(*state_);
     widen(*challenger_, nis / gate_.threshold());
-    agreeing_ = challenger_->update(sensor_->take(measurement), update) == StepStatus::ok ? 1 : 0;
+    agreeing_ = challenger_takes() ? 1 : 0;
   } else {
     agreeing_ = 1;  // the first of two points
   }

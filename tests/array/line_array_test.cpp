@@ -27,6 +27,13 @@ TEST(LineArray, SteeringVectorIsThePhaseAtEachSensor) {
     }
 }
 
+TEST(LineArray, SaysFromWhereAnglesHaveImages) {
+  EXPECT_EQ((LineArray{15, 0.5}.note()), "");
+  EXPECT_EQ((LineArray{15, 750.0 / 1500.0}.note()), "");
+  EXPECT_NE((LineArray{15, 4.0}.note().find("sines differ by 0.25 sound alike, so that only targets within 7.18 deg")),
+            std::string::npos);
+}
+
 TEST(LineArray, DerivativeOfTheSteeringVectorIsThatOfFiniteDifferences) {
   constexpr double kStep_rad = 1e-6;
   for (const LineArray& array : kArrays)

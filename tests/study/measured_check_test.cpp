@@ -67,6 +67,17 @@ TEST(MeasuredCheck, SetsMeasureWhatTheTrackersTakeToo) {
               HasSubstr("trackers.batch: measures bearing (bearing_deg), the set \"other\" gives "));
 }
 
+TEST(MeasuredCheck, ArraysHaveMoreSensorsThanThereAreTargets) {
+  const auto trackers = [](const std::string& targets) {
+    return "[trackers.paper]\nkind = \"subspace_angles\"\nq_deg2ps3 = 1.0\nsigma_deg = 2.0\ntargets = " + targets +
+           "\n";
+  };
+  EXPECT_EQ(refusal(study_on("array_a_0db", trackers("14"))), "no error");
+  EXPECT_EQ(refusal(study_on("array_a_0db", trackers("\"mdl\""))), "no error");
+  EXPECT_THAT(refusal(study_on("array_a_0db", trackers("15"))),
+              HasSubstr("trackers.paper: follows 15 targets, which takes an array of 16 sensors; the scenario has 15"));
+}
+
 /// A user's own tracker, which does not say what it measures.
 class Quiet final : public Tracker {
  public:

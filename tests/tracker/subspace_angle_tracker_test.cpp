@@ -66,6 +66,54 @@ TEST(SubspaceAngleTracker, BeginsWithTwoIntervalsInTheOrderOfTheAngles) {
   }
 }
 
+TEST(SubspaceAngleTracker, TargetsThatLeaveTheSectorAreBegunAnew) {
+  // One passes along end-fire, where sines tell little of angles and -90 deg is heard as 90.
+  const Recording recording = recording_of(60, 0, [](int k) { return scene_of({-89.0 + 0.5 * k, 20.0}, 10.0); });
+  SubspaceAngleTracker tracker(paper_options(2));
+  int newest = 0;
+  std::vector<double> last_deg;
+  for (const Measurement& measurement : recording.measurements) {
+    last_deg.clear();
+    for (const StepRecord& record : tracker.step(measurement)) {
+      EXPECT_LT(std::abs(degrees(record.x[0])), 90.0);
+      EXPECT_LT(std::abs(degrees(record.prediction->x[0])), 100.0);
+      EXPECT_TRUE(is_covariance(record.P));
+      newest = std::max(newest, record.track);
+      last_deg.push_back(degrees(record.x[0]));
+    }
+  }
+  EXPECT_GT(newest, 1) << "the first two are lost";
+  ASSERT_EQ(last_deg.size(), 2u);
+  EXPECT_NEAR(std::min(last_deg[0], last_deg[1]), -59.5, 1.0);
+  EXPECT_NEAR(std::max(last_deg[0], last_deg[1]), 20.0, 1.0);
+  tracker.reset();
+  tracker.step(recording.measurements[0]);
+  EXPECT_EQ(tracker.step(recording.measurements[1])[0].track, 0);
+}
+
+TEST(SubspaceAngleTracker, OutagesAreCrossedInsideTheSector) {
+  const Recording recording = recording_of(60, 0, [](int) { return scene_of({-30.0, 20.0}, 10.0); });
+  for (const double outage_s : {60.0, 200.0, 1000.0}) {
+    SubspaceAngleTracker tracker(paper_options(2));
+    std::size_t records = 0;
+    for (Measurement measurement : recording.measurements) {
+      if (measurement.time_s > 30.0) measurement.time_s += outage_s;
+      const auto step = tracker.step(measurement);
+      for (const StepRecord& record : step) EXPECT_LT(std::abs(degrees(record.x[0])), 90.0);
+      records = step.size();
+      if (measurement.time_s < outage_s + 50.0) continue;
+      for (const StepRecord& record : step) EXPECT_EQ(record.status, StepStatus::ok) << outage_s;
+    }
+    EXPECT_EQ(records, 2u);
+  }
+}
+
+TEST(SubspaceAngleTracker, MoreTargetsThanAnArrayTellsApartAreNotFollowedAsFewer) {
+  const Recording recording = array_run("array_a_10db");
+  SubspaceAngleTracker tracker(paper_options(15));
+  for (const Measurement& measurement : recording.measurements) EXPECT_TRUE(tracker.step(measurement).empty());
+}
+
 TEST(SubspaceAngleTracker, RecordsAreThoseOfTheKalmanFilter) {
   const Recording recording = array_run("array_a_10db");
   SubspaceAngleOptions options = paper_options();

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <string>
 
 #include "truebearing/core/angle.hpp"
 
@@ -35,6 +36,9 @@ struct LineArray {
   /// What two targets at the same range of sines have to differ by to be told apart by a beam: lambda / (M d), half the
   /// width of its main lobe between nulls.
   double resolution_sine() const { return 1.0 / (spacing_wavelengths * sensors); }
+
+  /// What a user has to know of angles that this array tells, a sentence; empty where there is nothing.
+  std::string note() const;
 
   /// Their distance in resolutions.
   double distance(double first_rad, double second_rad) const {

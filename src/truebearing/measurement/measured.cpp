@@ -27,8 +27,8 @@ Measured Measured::bearing_frequency() {
   return {"bearing_frequency", {"bearing_deg", "frequency_hz"}};
 }
 
-Measured Measured::snapshots() {
-  return {"snapshots", {"snapshots"}};
+Measured Measured::snapshots(int sensors) {
+  return {"snapshots", {"snapshots"}, sensors};
 }
 
 Measured Measured::step_log(const StateSpace& space) {
@@ -46,6 +46,9 @@ std::string describe(const Measured& measured) {
 }
 
 std::optional<std::string> mismatch(const Measured& taken, const Measured& given, const std::string& giver) {
+  if (taken.sensors > given.sensors && given.sensors > 0)
+    return fmt::format("follows {} targets, which takes an array of {} sensors; {} has {}", taken.sensors - 1,
+                       taken.sensors, giver, given.sensors);
   if (taken == given) return std::nullopt;
   if (given.kind == kValues && taken.components == given.components) return std::nullopt;
   if (taken == Measured::bearing() && given == Measured::bearing_frequency()) return std::nullopt;

@@ -13,8 +13,9 @@ namespace truebearing {
 struct Measured {
   std::string kind;                     ///< "position"; a sensor of another kind has a word of its own
   std::vector<std::string> components;  ///< of z, as Recording::measured: "east_m", "bearing_deg"
+  int sensors = 0;                      ///< of an array: that it has, or that are needed; 0 where nothing is said
 
-  bool operator==(const Measured&) const = default;
+  bool operator==(const Measured& other) const { return kind == other.kind && components == other.components; }
   /// Its components are states then; what was measured beside them stands in the log alone.
   bool is_step_log() const { return kind == "step_log"; }
 
@@ -24,7 +25,7 @@ struct Measured {
   static Measured bearing();
   static Measured bearing_frequency();
   /// The blocks of a line array, which have no z.
-  static Measured snapshots();
+  static Measured snapshots(int sensors = 0);
   /// What a tracker that ran elsewhere made of its measurements: states of that space.
   static Measured step_log(const StateSpace& space);
   /// The kind above that has these components; "values" where none has.

@@ -5,6 +5,7 @@
 #include <complex>
 #include <numbers>
 
+#include "truebearing/array/line_array.hpp"
 #include "truebearing/core/angle.hpp"
 #include "truebearing/core/constants.hpp"
 
@@ -185,6 +186,10 @@ Recording LineArrayScenario::simulate(const RunKey& key) const {
   }
   recording.snapshots = std::move(values);
   return recording;
+}
+
+std::string LineArrayScenario::note() const {
+  return LineArray{parameters_.sensors, parameters_.spacing_wavelengths}.note();
 }
 
 namespace {

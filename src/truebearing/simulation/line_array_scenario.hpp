@@ -74,7 +74,8 @@ class LineArrayScenario final : public Scenario {
   /// Throws InputError where no draw of random targets keeps to the limits.
   Recording simulate(const RunKey& key) const override;
   const StateSpace& truth_space() const override;
-  std::optional<Measured> measured() const override { return Measured::snapshots(); }
+  std::optional<Measured> measured() const override { return Measured::snapshots(parameters_.sensors); }
+  std::string note() const override;
   const LineArrayParameters& parameters() const { return parameters_; }
 
  private:

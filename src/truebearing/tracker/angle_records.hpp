@@ -3,11 +3,19 @@
 
 #include <cmath>
 #include <span>
+#include <variant>
 
 #include "truebearing/array/line_array.hpp"
 #include "truebearing/tracker/step_record.hpp"
 
 namespace truebearing {
+
+/// Whether a target is in the array's sector, and not anywhere in it. x: [angle, rate].
+template <typename Vector, typename Matrix>
+bool is_in_sector(const Vector& x, const Matrix& P) {
+  constexpr double kAnywhere_rad = 1.0;
+  return std::abs(x[0]) < 0.5 * kPi && P(0, 0) < kAnywhere_rad * kAnywhere_rad;
+}
 
 /// Of a measurement that was not looked at: the states of the step before stand.
 inline void refuse(std::span<StepRecord> records) {
@@ -17,6 +25,13 @@ inline void refuse(std::span<StepRecord> records) {
     record.innovation.reset();
     record.gain.reset();
   }
+}
+
+/// Sensors without which that many targets cannot be told apart; 0 where their number is counted.
+template <typename Criterion>
+int fewest_sensors(const std::variant<int, Criterion>& targets) {
+  const int* given = std::get_if<int>(&targets);
+  return given ? *given + 1 : 0;
 }
 
 /// Fills in each record's nearest neighbour. records: of one step, states [angle, rate]. difference_variance(i, j):

@@ -5,7 +5,6 @@
 
 #include "truebearing/array/direction_finding.hpp"
 #include "truebearing/core/angle.hpp"
-#include "truebearing/tracker/angle_records.hpp"
 #include "truebearing/tracker/snapshot_guard.hpp"
 
 namespace truebearing {
@@ -109,12 +108,11 @@ std::span<const StepRecord> JointAngleTracker::begin_afresh(const Measurement& m
 
 // Whether, dt_s after the last interval that was used, a target is outside the array's sector or anywhere in it.
 bool JointAngleTracker::is_lost(double dt_s) const {
-  constexpr double kAnywhere_rad = 1.0;
   BoundedVector x;
   BoundedMatrix P;
   for (int n = 0; n < static_cast<int>(tracks_.size()); ++n) {
     marginal(hypotheses_.best().state, n, dt_s, x, P);
-    if (!(std::abs(x[0]) < 0.5 * kPi) || !(P(0, 0) < kAnywhere_rad * kAnywhere_rad)) return true;
+    if (!is_in_sector(x, P)) return true;
   }
   return false;
 }
@@ -131,6 +129,7 @@ bool JointAngleTracker::begin(double time_s) {
     N = *given;
   else
     N = source_count(whole.eigenvalues, interval_.snapshots(), std::get<OrderCriterion>(options_.targets));
+  if (N >= interval_.sensors()) return false;  // more than the array could ever tell apart
   N = std::min({N, kMaxSignals, interval_.live_sensors() - 1});
   noise_power_ = options_.noise_power.value_or(std::max(
       whole.eigenvalues.segment(interval_.sensors() - interval_.live_sensors(), interval_.live_sensors() - N).mean(),

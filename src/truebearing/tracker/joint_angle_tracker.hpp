@@ -14,6 +14,7 @@
 #include "truebearing/array/angle_hypotheses.hpp"
 #include "truebearing/array/line_array.hpp"
 #include "truebearing/array/sample_covariance.hpp"
+#include "truebearing/tracker/angle_records.hpp"
 #include "truebearing/tracker/stream_guard.hpp"
 #include "truebearing/tracker/tracker.hpp"
 
@@ -50,7 +51,7 @@ class JointAngleTracker final : public Tracker {
   void reset() override;
   std::unique_ptr<Tracker> fresh() const override { return std::make_unique<JointAngleTracker>(options_); }
   const StateSpace& space() const override { return angle_space(); }
-  std::optional<Measured> measures() const override { return Measured::snapshots(); }
+  std::optional<Measured> measures() const override { return Measured::snapshots(fewest_sensors(options_.targets)); }
   RecordBlocks blocks() const override {
     return {.prediction = true, .innovation = true, .gain = true, .neighbour = true};
   }

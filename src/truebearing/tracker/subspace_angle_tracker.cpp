@@ -5,7 +5,6 @@
 
 #include "truebearing/array/direction_finding.hpp"
 #include "truebearing/measurement/lagged_angle.hpp"
-#include "truebearing/tracker/angle_records.hpp"
 #include "truebearing/tracker/snapshot_guard.hpp"
 #include "truebearing/tracker/start.hpp"
 
@@ -23,6 +22,13 @@ SubspaceAngleTracker::SubspaceAngleTracker(SubspaceAngleOptions options) : optio
 
 void SubspaceAngleTracker::reset() {
   guard_ = {};
+  forget();
+  first_track_ = 0;
+}
+
+// All targets, so that two intervals begin them anew.
+void SubspaceAngleTracker::forget() {
+  first_track_ += static_cast<int>(filters_.size());
   first_.reset();
   filters_.clear();
   predicted_.clear();
@@ -36,6 +42,7 @@ std::span<const StepRecord> SubspaceAngleTracker::step(const Measurement& measur
     return records_;
   }
   bool usable = verdict == StreamGuard::Verdict::usable;
+  if (usable && is_lost(measurement.time_s - used_time_s_)) forget();
   if (filters_.empty()) {
     if (!usable || !begin(measurement.time_s)) return {};
     used_time_s_ = measurement.time_s;
@@ -47,6 +54,18 @@ std::span<const StepRecord> SubspaceAngleTracker::step(const Measurement& measur
   }
   if (usable) follow_subspace();
   return publish(measurement, measurement.time_s - used_time_s_, usable);
+}
+
+// Whether, dt_s after the last interval that was used, a target is outside the array's sector or anywhere in it.
+bool SubspaceAngleTracker::is_lost(double dt_s) const {
+  return std::any_of(filters_.begin(), filters_.end(), [&](Filter filter) {
+    filter.predict(motion(), dt_s);
+    return !is_in_sector(filter.x(), filter.P());
+  });
+}
+
+SubspaceAngleTracker::Motion SubspaceAngleTracker::motion() const {
+  return {{options_.q_rad2ps3}};
 }
 
 // Step 1: angles at two times, in the order of the angles.
@@ -61,6 +80,7 @@ bool SubspaceAngleTracker::begin(double time_s) {
     N = *given;
   else
     N = source_count(whole.eigenvalues, interval_.snapshots(), std::get<OrderCriterion>(options_.targets));
+  if (N >= M) return false;  // more than the array could ever tell apart
   N = std::min(N, interval_.live_sensors() - 1);
   if (N < 1) return false;
   const Eigen::MatrixXcd E = whole.basis.leftCols(N);
@@ -184,7 +204,6 @@ double SubspaceAngleTracker::variance(std::size_t n, double curvature) const {
 
 // Steps 2 to 5 for every target, and its record.
 std::span<const StepRecord> SubspaceAngleTracker::publish(const Measurement& measurement, double dt_s, bool usable) {
-  const ConstantVelocity<1, ContinuousWhiteNoise> motion{{options_.q_rad2ps3}};
   const LineArray array{interval_.sensors(), interval_.spacing_wavelengths()};
   const double lag_s = options_.lag_intervals * interval_.interval_s();
   const std::size_t N = filters_.size();
@@ -194,8 +213,8 @@ std::span<const StepRecord> SubspaceAngleTracker::publish(const Measurement& mea
     predicted_[n] = filters_[n];
     StepRecord& record = records_[n];
     record.status = begins ? StepStatus::ok : StepStatus::coasted;
-    if (dt_s > 0.0 && predicted_[n].predict(motion, dt_s) == StepStatus::failed) record.status = StepStatus::failed;
-    record.track = static_cast<int>(n);
+    if (dt_s > 0.0 && predicted_[n].predict(motion(), dt_s) == StepStatus::failed) record.status = StepStatus::failed;
+    record.track = first_track_ + static_cast<int>(n);
     record.time_s = measurement.time_s;
     record.space = &angle_space();
     record.sensor = measurement.sensor;
@@ -237,6 +256,13 @@ std::span<const StepRecord> SubspaceAngleTracker::publish(const Measurement& mea
       }
       if (record.status == StepStatus::failed) ++guard_.counts.failed;
       filters_[n] = updated;
+    }
+    if (!is_in_sector(updated.x(), updated.P()) && record.x.size() > 0) {  // what is known of it is what was known then
+      record.status = StepStatus::failed;
+      record.prediction = Prediction{record.x, record.P};
+      record.innovation.reset();
+      record.gain.reset();
+      continue;
     }
     record.x = updated.x();
     record.P = updated.P();

@@ -19,6 +19,7 @@
 #include "truebearing/array/sample_covariance.hpp"
 #include "truebearing/filter/kalman.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
+#include "truebearing/tracker/angle_records.hpp"
 #include "truebearing/tracker/stream_guard.hpp"
 #include "truebearing/tracker/tracker.hpp"
 
@@ -55,7 +56,7 @@ class SubspaceAngleTracker final : public Tracker {
   void reset() override;
   std::unique_ptr<Tracker> fresh() const override { return std::make_unique<SubspaceAngleTracker>(options_); }
   const StateSpace& space() const override { return angle_space(); }
-  std::optional<Measured> measures() const override { return Measured::snapshots(); }
+  std::optional<Measured> measures() const override { return Measured::snapshots(fewest_sensors(options_.targets)); }
   RecordBlocks blocks() const override {
     return {.prediction = true, .innovation = true, .gain = true, .neighbour = true};
   }
@@ -63,11 +64,15 @@ class SubspaceAngleTracker final : public Tracker {
 
  private:
   using Filter = KalmanFilter<2>;
+  using Motion = ConstantVelocity<1, ContinuousWhiteNoise>;
   struct Start {
     double time_s;
     std::vector<double> angles;
   };
 
+  void forget();
+  bool is_lost(double dt_s) const;
+  Motion motion() const;
   bool begin(double time_s);
   void follow_subspace();
   const SplitMatrix<double>& basis() const;
@@ -81,6 +86,7 @@ class SubspaceAngleTracker final : public Tracker {
   Interval interval_;
   std::optional<Start> first_;
   std::vector<Filter> filters_;
+  int first_track_ = 0;  // its number
   std::vector<Filter> predicted_;
   double used_time_s_ = 0.0;
 

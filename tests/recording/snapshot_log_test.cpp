@@ -104,6 +104,17 @@ class SnapshotLogTest : public ::testing::Test {
   const std::filesystem::path path_ = folder_.path() / "log.h5";
 };
 
+TEST_F(SnapshotLogTest, TargetsAreNumberedByFirstAngleWhateverTheirColumns) {
+  Recording written = array_recording();  // target 1 comes later
+  written.truth.insert(written.truth.begin(), written.truth[0]);
+  for (BoundedVector& x : written.truth[0].x) x[0] += 0.5;
+  write_snapshot_log(path_, written);
+  const Recording recording = read_snapshot_log(path_);
+  EXPECT_EQ(recording.truth[0].track, 1);
+  EXPECT_EQ(recording.truth[1].track, 0);
+  EXPECT_EQ(recording.truth[2].track, 2);
+}
+
 TEST_F(SnapshotLogTest, WrittenRecordingReadsBackToTheBit) {
   const Recording written = array_recording();
   write_snapshot_log(path_, written);

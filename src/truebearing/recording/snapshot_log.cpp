@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <string>
@@ -209,14 +210,24 @@ bool same(std::span<const Complex> a, std::span<const Complex> b) {
                     [](Complex x, Complex y) { return same(x.real(), y.real()) && same(x.imag(), y.imag()); });
 }
 
+// Numbers targets as trackers of angles do that begin them all at once: those that are there from the first
+// measurement in the order of their angles, the others behind them in the order in which they stand.
+void number_by_first_angle(std::vector<Truth>& truth) {
+  std::vector<std::size_t> order(truth.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto first_rad = [&](std::size_t n) { return truth[n].x.empty() ? kNaN : truth[n].x.front()[0]; };
+  const auto later =
+      std::stable_partition(order.begin(), order.end(), [&](std::size_t n) { return std::isfinite(first_rad(n)); });
+  std::stable_sort(order.begin(), later, [&](std::size_t a, std::size_t b) { return first_rad(a) < first_rad(b); });
+  for (std::size_t place = 0; place < order.size(); ++place) truth[order[place]].track = static_cast<int>(place);
+}
+
 Recording make_recording(const SnapshotLayout& layout, const std::vector<double>& time_s, TruthTable& truth,
                          std::vector<Complex> values) {
   Recording recording;
   recording.measured = {kSnapshots};
   if (truth.targets > 0) recording.truth_space = &angle_space();
   recording.truth.resize(truth.targets);
-  for (std::size_t target = 0; target < truth.targets; ++target)
-    recording.truth[target].track = static_cast<int>(target);
   recording.snapshots = std::make_shared<const std::vector<Complex>>(std::move(values));
 
   const std::span<const Complex> all(*recording.snapshots);
@@ -235,6 +246,7 @@ Recording make_recording(const SnapshotLayout& layout, const std::vector<double>
     for (std::size_t target = 0; target < truth.targets; ++target)
       recording.truth[target].x.emplace_back(Eigen::Vector2d(truth.angle(k, target), truth.rate(k, target)));
   }
+  number_by_first_angle(recording.truth);
   return recording;
 }
 

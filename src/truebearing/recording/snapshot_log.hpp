@@ -8,6 +8,10 @@
 // target), from broadside, and `truth_rate_degps` (interval, target), without which the rates are the slopes of the
 // angles (velocity_truth.hpp). Degrees become radians.
 //
+// Angles are from broadside, in (-90, 90); a target at a positive one is heard with a phase that advances from sensor 0
+// to the last, exp(j 2 pi spacing sin(angle) sensor). Conjugate data are heard as mirrored angles. Targets need not
+// stand in the order of their angles.
+//
 // Floats or integers of any width are read, 64 bit floats are written. NaN or infinite values are missing ones. An
 // interval without one snapshot of finite values is counted as missing; one identical to the one before, of the same
 // time, is dropped and counted.
@@ -22,7 +26,7 @@ namespace truebearing {
 /// Whether the file is to be read as one: by the ending of its name, .h5 or .hdf5, or by what it begins with.
 bool is_snapshot_log(const std::filesystem::path& path);
 
-/// Measured is "snapshots", the truth in angle_space() with targets numbered from 0. Throws InputError that names file,
+/// Measured is "snapshots", the truth in angle_space() with targets numbered in the order of their first angles. Throws InputError that names file,
 /// dataset and attribute; before anything is allocated where there are more than 4096 sensors, a million intervals, a
 /// million snapshots in one, 2 GiB of snapshots, 256 targets or ten million true states.
 Recording read_snapshot_log(const std::filesystem::path& path);

@@ -23,6 +23,22 @@ struct Unfilled {
 // Updates that fail one after another, until the track is given up.
 constexpr int kFailedInRow = 3;
 
+// Whether x (N), P (N x N) are a track at a place that a target can have, known better than not at all; the first
+// `positions` components are its place. Written for few instructions: every step asks twice.
+template <int N>
+bool is_sensible(const double* x, const double* P, int positions) {
+  constexpr double kFarthest_m = 1e7;
+  double sum = 0.0;  // not finite where a number is not
+  for (int i = 0; i < N; ++i) sum += x[i];
+  for (int i = 0; i < N * N; ++i) sum += P[i];
+  double least_variance = P[0];
+  for (int i = 1; i < N; ++i) least_variance = std::min(least_variance, P[i * (N + 1)]);
+  bool sensible = std::isfinite(sum) & (least_variance >= 0.0);
+  for (int i = 0; i < positions; ++i)
+    sensible &= (std::abs(x[i]) <= kFarthest_m) & (P[i * (N + 1)] <= kFarthest_m * kFarthest_m);
+  return sensible;
+}
+
 // As wide as lets a measurement pass: P times `factor`.
 void widen(TrackedState& state, double factor) {
   const BoundedVector x = state.x();
@@ -76,25 +92,23 @@ std::span<const StepRecord> FilterTracker::step(const Measurement& measurement) 
 
   // The filter stays at its last used measurement: a missing one leaves no trace in what follows, to the bit.
   kept_->assign(*state_);
-  record_.status = predict(measurement.time_s - used_time_s_);
-  if (!is_sensible()) {  // so long ago that nothing is known any more
+  if (!predict(measurement.time_s - used_time_s_)) {  // so long ago that nothing is known any more
     if (!usable) return give_up();
     restart(measurement.time_s);
     if (!begun_) return start_from(measurement);
     kept_->assign(*state_);
-    record_.status = predict(0.0);
+    predict(0.0);
   }
   if (record_.status == StepStatus::ok) record_.status = usable ? update(measurement) : StepStatus::coasted;
-  if (!is_sensible()) {
+  if (!publish()) {
     lost_ = true;
     return give_up();
   }
-  const std::span<const StepRecord> published = publish();
   if (record_.status == StepStatus::ok)
     used_time_s_ = measurement.time_s;
   else
     state_.swap(kept_);
-  return published;
+  return {&record_, 1};
 }
 
 void FilterTracker::reset() {
@@ -163,17 +177,17 @@ std::span<const StepRecord> FilterTracker::start_from(const Measurement& measure
   }
   begin(*start);
   pending_.reset();
-  if (!is_sensible()) {
+  clear_blocks();
+  if (!publish()) {
     ++guard_.counts.failed;
     begun_ = false;
     return {};
   }
   used_time_s_ = measurement.time_s;
-  clear_blocks();
   record_.time_s = measurement.time_s;
   record_.sensor = measurement.sensor;
   record_.status = StepStatus::ok;
-  return publish();
+  return {&record_, 1};
 }
 
 // The state that a measurement begins, with the one before it where it needs two. Nothing where that is not there, or so
@@ -217,15 +231,17 @@ StepStatus FilterTracker::cross(double dt_s, TrackedState& state) const {
   return dt_s > 0.0 ? state.predict(std::min(dt_s, options_.lost_after_s)) : StepStatus::ok;
 }
 
-StepStatus FilterTracker::predict(double dt_s) {
-  // A failed prediction leaves the filter where it was, which is not where it would be by now.
-  if (cross(dt_s, *state_) == StepStatus::failed) {
-    ++guard_.counts.failed;
-    return StepStatus::failed;
-  }
+// Gives the record its prediction and, until there is an update, its status. False where what came out is no track.
+bool FilterTracker::predict(double dt_s) {
+  record_.status = cross(dt_s, *state_);
   Prediction& prediction = record_.prediction.emplace(Unfilled());
-  copy_published(prediction.x, prediction.P);
-  return StepStatus::ok;
+  const bool sensible = copy_published(prediction.x, prediction.P);
+  // A failed prediction leaves the filter where it was, which is not where it would be by now.
+  if (record_.status == StepStatus::failed) {
+    ++guard_.counts.failed;
+    record_.prediction.reset();
+  }
+  return sensible;
 }
 
 // Leaves the state at the prediction where the measurement is not used.
@@ -309,27 +325,14 @@ bool FilterTracker::challenge(const Measurement& measurement, double nis) {
   return agreeing_ >= kAgreeing;
 }
 
-// Whether a track at a place that a target can have, known better than not at all.
-bool FilterTracker::is_sensible() const {
-  constexpr double kFarthest_m = 1e7;
-  const int n = state_->size(), d = space_->size() / 2;
-  const double *x = state_->x_data(), *P = state_->P_data();
-  double sum = 0.0;  // not finite where a number is not
-  for (int i = 0; i < n; ++i) sum += x[i];
-  for (int i = 0; i < n * n; ++i) sum += P[i];
-  bool sensible = std::isfinite(sum);
-  for (int i = 0; i < n; ++i) sensible &= P[i * (n + 1)] >= 0.0;
-  for (int i = 0; i < d; ++i) sensible &= std::abs(x[i]) <= kFarthest_m && P[i * (n + 1)] <= kFarthest_m * kFarthest_m;
-  return sensible;
-}
-
 // What came out is no track any more: the last one that was stands in the record.
 std::span<const StepRecord> FilterTracker::give_up() {
   ++guard_.counts.failed;
   record_.status = StepStatus::failed;
   clear_blocks();
   state_.swap(kept_);
-  return publish();
+  publish();
+  return {&record_, 1};
 }
 
 // A measurement that was not looked at: the state of the step before stands.
@@ -353,26 +356,37 @@ void FilterTracker::pull(const SizedMeasurement<M>& measurement) {
   spread_ = options_.output_pull * options_.output_pull * left * S * left.transpose();
 }
 
-std::span<const StepRecord> FilterTracker::publish() {
-  copy_published(record_.x, record_.P);
+// False where the state is no track; what it is stands in the record all the same.
+bool FilterTracker::publish() {
+  const bool sensible = copy_published(record_.x, record_.P);
   if (options_.output_pull > 0.0 && record_.gain) {
     record_.x.head(moved_.size()) += moved_;
     record_.P.topLeftCorner(moved_.size(), moved_.size()) += spread_;
   }
   if (const ModeVector* probabilities = state_->mode_probabilities()) record_.mode_probabilities = *probabilities;
-  return {&record_, 1};
+  return sensible;
 }
 
-// Without the components that the space does not have.
-void FilterTracker::copy_published(BoundedVector& x, BoundedMatrix& P) const {
-  const int n = space_->size(), states = state_->size();
+// Without the components that the space does not have. False where the state is no track (is_sensible()).
+bool FilterTracker::copy_published(BoundedVector& x, BoundedMatrix& P) const {
+  const int n = space_->size();
   const double *from_x = state_->x_data(), *from_P = state_->P_data();
+  bool sensible = true;
   x.resize(n);
   P.resize(n, n);
-  with_count(n, [&]<int N>(std::integral_constant<int, N>) {
-    std::copy_n(from_x, N, x.data());
-    for (int j = 0; j < N; ++j) std::copy_n(from_P + j * states, N, P.data() + j * N);
+  with_count(state_->size(), [&]<int N>(std::integral_constant<int, N>) {
+    using Vector = Eigen::Matrix<double, N, 1>;
+    using Matrix = Eigen::Matrix<double, N, N>;
+    sensible = is_sensible<N>(from_x, from_P, n / 2);
+    if (n == N) {
+      Eigen::Map<Vector>(x.data()) = Eigen::Map<const Vector>(from_x);
+      Eigen::Map<Matrix>(P.data()) = Eigen::Map<const Matrix>(from_P);
+    } else {
+      x = Eigen::Map<const Vector>(from_x).head(n);
+      P = Eigen::Map<const Matrix>(from_P).topLeftCorner(n, n);
+    }
   });
+  return sensible;
 }
 
 void FilterTracker::clear_blocks() {

@@ -56,17 +56,16 @@ class FilterTracker : public Successor {
   std::optional<PriorStart> start_at(const std::optional<Measurement>& waiting, const Measurement& measurement);
   void add_motion(double dt_s, PriorStart& start);
   bool challenge(const Measurement& measurement, double nis);
-  bool is_sensible() const;
   std::span<const StepRecord> give_up();
   StepStatus cross(double dt_s, TrackedState& state) const;
-  StepStatus predict(double dt_s);
+  bool predict(double dt_s);
   StepStatus update(const Measurement& measurement);
   std::span<const StepRecord> refuse();
   template <int M>
   void pull(const SizedMeasurement<M>& measurement);
-  std::span<const StepRecord> publish();
+  bool publish();
   void clear_blocks();
-  void copy_published(BoundedVector& x, BoundedMatrix& P) const;
+  bool copy_published(BoundedVector& x, BoundedMatrix& P) const;
 
   const StateSpace* space_;
   std::unique_ptr<AnySensor> sensor_;

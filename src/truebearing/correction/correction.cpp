@@ -86,7 +86,8 @@ void Correction::correct_record(const CorrectionInputs::Records& step, Track& tr
   const OutputUnits units = inputs_.units(track.extractor, base);
   const BoundedVector wanted = base.x + units.state(model_->network.output(phi_)) - reference.x;
   const BoundedMatrix P_c = units.in_frame(model_->head_covariance(phi_, units.in_frame(step.source->P)));
-  const Limited limited = limit_kappa(reference.P, wanted, bounds_.kappa);
+  const SafeDistance distance(reference.P);
+  const Limited limited = limit_kappa(distance, wanted, bounds_.kappa);
   const BoundedVector& d = limited.d;
   const bool gated = bounds_.gate && model_->gate;
   const double g =
@@ -100,8 +101,8 @@ void Correction::correct_record(const CorrectionInputs::Records& step, Track& tr
   // Where its parts have weights of their own, a correction may become longer than it was.
   const bool apart = w.position != w.velocity;
   const BoundedVector weighted =
-      apart ? limit_kappa(reference.P, G.cwiseProduct(d), bounds_.kappa).d : BoundedVector(g * w.position * d);
-  const BoundedVector x = within_kappa(reference.x, reference.P, weighted, bounds_.kappa);
+      apart ? limit_kappa(distance, G.cwiseProduct(d), bounds_.kappa).d : BoundedVector(g * w.position * d);
+  const BoundedVector x = within_kappa(reference.x, distance, weighted, bounds_.kappa);
   if (bounds_.referee && base.status == StepStatus::ok) track.referee.predict(reference.x + d, reference, x);
 
   // Written as a change of P_reference: nothing to correct leaves the covariance as it is, to the bit.
@@ -118,7 +119,7 @@ void Correction::correct_record(const CorrectionInputs::Records& step, Track& tr
   corrected.P = P;
   corrected.correction->gate = G.mean();
   corrected.correction->limited = limited.limited;
-  corrected.correction->distance_sigmas = apart ? safe_distance(reference.P, weighted) : G[0] * limited.distance_sigmas;
+  corrected.correction->distance_sigmas = apart ? distance.of(weighted) : G[0] * limited.distance_sigmas;
 }
 
 }  // namespace truebearing

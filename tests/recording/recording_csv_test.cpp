@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <streambuf>
+#include <utility>
+#include <vector>
 
 #include "tests/support/error_message.hpp"
 #include "tests/support/real_data.hpp"
@@ -226,6 +229,58 @@ TEST(RecordingCsv, SeveralTrueTracksDoNotFitALog) {
   Recording log = read("time_s,position_m,truth_position_m\n0,1,0\n");
   log.truth.push_back(log.truth[0]);
   EXPECT_THAT(error_message([&] { write_recording(log); }), HasSubstr("2 true tracks"));
+}
+
+// Gives a line at a time, as a pipe does whose writer is slower than the reader.
+class LineByLine : public std::streambuf {
+ public:
+  explicit LineByLine(std::vector<std::string> lines) : lines_(std::move(lines)) {}
+  std::size_t given() const { return next_; }
+
+ protected:
+  int_type underflow() override {
+    if (next_ == lines_.size()) return traits_type::eof();
+    std::string& line = lines_[next_++];
+    setg(line.data(), line.data(), line.data() + line.size());
+    return traits_type::to_int_type(line[0]);
+  }
+
+ private:
+  std::vector<std::string> lines_;
+  std::size_t next_ = 0;
+};
+
+TEST(RecordingReader, GivesEachRowAsSoonAsItHasCome) {
+  LineByLine lines({"time_s,position_m,truth_position_m\n", "1,10,9\n", "1,10,9\n", "2,,8\n", "3,30,7\n", "2,30,7\n"});
+  std::istream stream(&lines);
+  RecordingReader reader(stream, "log.csv");
+  EXPECT_EQ(lines.given(), 1u) << "the header";
+  EXPECT_EQ(reader.truth_space(), &line_space());
+  EXPECT_THAT(reader.given_truth(), ElementsAre(true, false));
+  ASSERT_TRUE(reader.next());
+  EXPECT_EQ(lines.given(), 2u) << "and no row further";
+  EXPECT_TRUE(reader.may_wait());
+  EXPECT_EQ(reader.measurement().z(0), 10.0);
+  EXPECT_EQ(reader.truth()(0), 9.0);
+  EXPECT_TRUE(std::isnan(reader.truth()(1)));
+  ASSERT_TRUE(reader.next());
+  EXPECT_EQ(reader.measurement().time_s, 2.0) << "the row twice is one";
+  EXPECT_TRUE(reader.measurement().is_missing());
+  EXPECT_EQ(reader.counts().repeated, 1);
+  EXPECT_EQ(reader.counts().missing, 1);
+  ASSERT_TRUE(reader.next());
+  EXPECT_THAT(error_message([&] { reader.next(); }), HasSubstr("log.csv:6: time_s: is 2, earlier than 3"));
+}
+
+TEST(RecordingReader, KnowsWhatHasCome) {
+  std::istringstream stream("time_s,position_m\n1,10\n2,20\n");
+  RecordingReader reader(stream, "log.csv");
+  EXPECT_FALSE(reader.may_wait());
+  ASSERT_TRUE(reader.next());
+  EXPECT_FALSE(reader.may_wait());
+  ASSERT_TRUE(reader.next());
+  EXPECT_FALSE(reader.next());
+  EXPECT_FALSE(reader.next());
 }
 
 TEST(RecordingCsv, ReadsTheRecordedFlight) {

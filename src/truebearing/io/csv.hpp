@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "truebearing/core/error.hpp"
@@ -29,6 +30,8 @@ class CsvReader {
 
   /// Moves to the next row; false at the end. Empty lines are passed over.
   bool next();
+  /// Whether next() may have to wait for who writes the rows: of those that have come all are read.
+  bool may_wait() const { return stream_->rdbuf()->in_avail() <= 0; }
   std::string_view text(std::size_t column) const;
   /// The cell as a number; NaN where it is empty, nan or inf.
   double number(std::size_t column) const;
@@ -66,6 +69,8 @@ class CsvWriter {
   void end_row();
 
   const std::string& str() const { return csv_; }
+  /// The text since the last take(), which is then forgotten: rows can be written as they come.
+  std::string take() { return std::exchange(csv_, {}); }
 
  private:
   void separate();

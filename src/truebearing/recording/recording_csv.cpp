@@ -16,7 +16,27 @@
 #include "truebearing/recording/velocity_truth.hpp"
 
 namespace truebearing {
+
+/// Which column of a log means what.
+struct CsvLayout {
+  /// A column of the log and what its numbers are multiplied by.
+  struct Column {
+    std::size_t index;
+    double factor;
+  };
+  std::size_t time = 0;
+  std::vector<std::string> measured;
+  std::vector<Column> z;
+  std::vector<Column> sigma;        // as long as z, or empty
+  std::vector<std::size_t> sensor;  // none, position, or position and velocity
+  std::vector<std::size_t> guess;   // none, range, or range and speed, with their sigmas
+  const StateSpace* truth_space = nullptr;
+  std::vector<std::optional<Column>> truth;  // by component of the truth space
+};
+
 namespace {
+
+using Column = CsvLayout::Column;
 
 constexpr double kRadiansPerDegree = radians(1.0);
 
@@ -55,24 +75,6 @@ std::string sigma_column(const std::string& measured) {
   const std::size_t split = measured.size() - find_unit(measured)->suffix.size();
   return measured.substr(0, split) + "_sigma" + measured.substr(split);
 }
-
-/// A column of the log and what its numbers are multiplied by.
-struct Column {
-  std::size_t index;
-  double factor;
-};
-
-/// Which column of a log means what.
-struct CsvLayout {
-  std::size_t time = 0;
-  std::vector<std::string> measured;
-  std::vector<Column> z;
-  std::vector<Column> sigma;        // as long as z, or empty
-  std::vector<std::size_t> sensor;  // none, position, or position and velocity
-  std::vector<std::size_t> guess;   // none, range, or range and speed, with their sigmas
-  const StateSpace* truth_space = nullptr;
-  std::vector<std::optional<Column>> truth;  // by component of the truth space
-};
 
 std::size_t position_in(const std::vector<std::string>& names, std::string_view name) {
   return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
@@ -210,41 +212,21 @@ BoundedVector read_truth(const CsvLayout& layout, const std::vector<double>& row
   return x;
 }
 
-void complete_truth(const CsvLayout& layout, Recording& recording) {
-  std::vector<double> time_s;
-  for (const Measurement& measurement : recording.measurements) time_s.push_back(measurement.time_s);
-  std::vector<bool> given;
-  for (const auto& column : layout.truth) given.push_back(column.has_value());
-  complete_velocities(*layout.truth_space, given, time_s, recording.truth[0].x);
-}
-
-Recording read_rows(CsvReader csv) {
-  const CsvLayout layout = read_csv_layout(csv);
+Recording read_rows(RecordingReader reader) {
   Recording recording;
-  recording.measured = layout.measured;
-  recording.truth_space = layout.truth_space;
-  if (layout.truth_space) recording.truth.resize(1);
-
-  std::vector<double> previous;
-  while (csv.next()) {
-    std::vector<double> row = read_numbers(csv);
-    const double time_s = row[layout.time];
-    if (std::isnan(time_s)) throw csv.error(layout.time, "is missing or infinite", "a finite time");
-    if (!previous.empty() && time_s < previous[layout.time])
-      throw csv.error(layout.time,
-                      fmt::format("is {}, earlier than {} in the row before", time_s, previous[layout.time]),
-                      "times that do not decrease");
-    if (identical(row, previous)) {
-      ++recording.counts.repeated;
-      continue;
-    }
-    recording.measurements.push_back(read_measurement(csv, layout, row));
-    recording.counts.missing += is_unusable(recording, recording.measurements.back());
-    if (layout.truth_space) recording.truth[0].x.push_back(read_truth(layout, row));
-    previous = std::move(row);
+  recording.measured = reader.measured();
+  recording.truth_space = reader.truth_space();
+  if (recording.truth_space) recording.truth.resize(1);
+  std::vector<double> time_s;
+  while (reader.next()) {
+    recording.measurements.push_back(reader.measurement());
+    if (!recording.truth_space) continue;
+    recording.truth[0].x.push_back(reader.truth());
+    time_s.push_back(reader.measurement().time_s);
   }
-  if (recording.measurements.empty()) throw InputError(csv.name(), "has no rows", "at least one measurement");
-  if (layout.truth_space) complete_truth(layout, recording);
+  recording.counts = reader.counts();
+  if (recording.truth_space)
+    complete_velocities(*recording.truth_space, reader.given_truth(), time_s, recording.truth[0].x);
   return recording;
 }
 
@@ -265,12 +247,89 @@ void write_vector(CsvWriter& csv, const BoundedVector& values, const std::vector
 
 }  // namespace
 
+struct RecordingReader::Log {
+  explicit Log(CsvReader reader) : csv(std::move(reader)), layout(read_csv_layout(csv)) {
+    recording.measured = layout.measured;
+  }
+
+  CsvReader csv;
+  CsvLayout layout;
+  Recording recording;  // its columns and counts, without measurements
+  std::vector<double> row;
+  Measurement measurement;
+  BoundedVector truth;
+};
+
+RecordingReader::RecordingReader(const std::filesystem::path& path) : log_(std::make_unique<Log>(CsvReader(path))) {}
+
+RecordingReader::RecordingReader(std::istream& stream, const std::string& name)
+    : log_(std::make_unique<Log>(CsvReader(stream, name))) {}
+
+RecordingReader::RecordingReader(RecordingReader&&) noexcept = default;
+RecordingReader::~RecordingReader() = default;
+
+const std::vector<std::string>& RecordingReader::measured() const {
+  return log_->layout.measured;
+}
+
+const StateSpace* RecordingReader::truth_space() const {
+  return log_->layout.truth_space;
+}
+
+std::vector<bool> RecordingReader::given_truth() const {
+  std::vector<bool> given;
+  for (const auto& column : log_->layout.truth) given.push_back(column.has_value());
+  return given;
+}
+
+bool RecordingReader::next() {
+  CsvReader& csv = log_->csv;
+  const CsvLayout& layout = log_->layout;
+  std::vector<double>& previous = log_->row;
+  while (csv.next()) {
+    std::vector<double> row = read_numbers(csv);
+    const double time_s = row[layout.time];
+    if (std::isnan(time_s)) throw csv.error(layout.time, "is missing or infinite", "a finite time");
+    if (!previous.empty() && time_s < previous[layout.time])
+      throw csv.error(layout.time,
+                      fmt::format("is {}, earlier than {} in the row before", time_s, previous[layout.time]),
+                      "times that do not decrease");
+    if (identical(row, previous)) {
+      ++log_->recording.counts.repeated;
+      continue;
+    }
+    log_->measurement = read_measurement(csv, layout, row);
+    log_->recording.counts.missing += is_unusable(log_->recording, log_->measurement);
+    if (layout.truth_space) log_->truth = read_truth(layout, row);
+    previous = std::move(row);
+    return true;
+  }
+  if (previous.empty()) throw InputError(csv.name(), "has no rows", "at least one measurement");
+  return false;
+}
+
+const Measurement& RecordingReader::measurement() const {
+  return log_->measurement;
+}
+
+const BoundedVector& RecordingReader::truth() const {
+  return log_->truth;
+}
+
+const Recording::Counts& RecordingReader::counts() const {
+  return log_->recording.counts;
+}
+
+bool RecordingReader::may_wait() const {
+  return log_->csv.may_wait();
+}
+
 Recording read_recording(const std::filesystem::path& path) {
-  return read_rows(CsvReader(path));
+  return read_rows(RecordingReader(path));
 }
 
 Recording read_recording(std::istream& stream, const std::string& name) {
-  return read_rows(CsvReader(stream, name));
+  return read_rows(RecordingReader(stream, name));
 }
 
 std::string write_recording(const Recording& recording) {

@@ -9,11 +9,44 @@
 
 #include <filesystem>
 #include <istream>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "truebearing/recording/recording.hpp"
 
 namespace truebearing {
+
+/// A log row by row, as it comes: what it holds in memory does not grow with the log.
+class RecordingReader {
+ public:
+  /// Opens a log, or standard input where the path is "-", and reads its header. Throws InputError that names file, line
+  /// and column, as all members do.
+  explicit RecordingReader(const std::filesystem::path& path);
+  /// The same for a stream that outlives the reader; `name` stands for the file in messages.
+  RecordingReader(std::istream& stream, const std::string& name);
+  RecordingReader(RecordingReader&&) noexcept;
+  ~RecordingReader();
+
+  const std::vector<std::string>& measured() const;
+  const StateSpace* truth_space() const;  ///< nullptr where the log has no truth
+  /// By component of the truth space: whether the log has a column of it.
+  std::vector<bool> given_truth() const;
+
+  /// Moves to the next measurement; false at the end. Throws where the log has none at all.
+  bool next();
+  const Measurement& measurement() const;
+  /// The true state with it, NaN where a component is not given; empty where the log has no truth.
+  const BoundedVector& truth() const;
+  /// Of the rows so far.
+  const Recording::Counts& counts() const;
+  /// Whether to ask for the next row may have to wait for who writes the log.
+  bool may_wait() const;
+
+ private:
+  struct Log;
+  std::unique_ptr<Log> log_;
+};
 
 /// Reads a log; "-" is standard input. Throws InputError that names file, line and column.
 Recording read_recording(const std::filesystem::path& path);

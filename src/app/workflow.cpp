@@ -16,7 +16,7 @@ constexpr std::size_t kValidationRuns = 200;
 std::string validation_scores(const Study& study, const std::string& name, const CorrectionModels& models,
                               const WorkflowOptions& options) {
   const CorrectionSpec& spec = study.tracker(name).correction.value();
-  TrackerSet trackers(study.make_ensemble(spec.design.members()));
+  TrackerSet trackers(study.make_ensemble(spec.members()));
   trackers.show_member(spec.design.base);
   if (spec.design.reference != spec.design.base) trackers.show_member(spec.design.reference);
   trackers.show_correction(name, models.at(name), spec.bounds);

@@ -24,6 +24,29 @@ void begin_record(const StepRecord& step, const StepRecord& reference, StepRecor
   corrected.correction.emplace();
 }
 
+// What is published of an estimate that is to move by d, its covariance with it from P to P_moved, by the weights G (n)
+// of the components: P + G (P_moved - P) G' and so on where all weights are one g, with the spread of what lies between.
+// Written as a change of P: nothing to move leaves the covariance as it is, to the bit.
+BoundedMatrix blended(const BoundedMatrix& P_from, const BoundedMatrix& P_moved, const BoundedVector& d,
+                      const BoundedVector& G) {
+  const Eigen::Index n = d.size();
+  BoundedMatrix P(n, n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const double a = G[i] == G[j] ? G[i] : std::sqrt(G[i] * G[j]);
+      const double b = G[i] == G[j] ? 1.0 - G[i] : std::sqrt((1.0 - G[i]) * (1.0 - G[j]));
+      P(i, j) = P_from(i, j) + a * (P_moved(i, j) - P_from(i, j)) - (1.0 - a - b) * P_from(i, j) + a * b * d[i] * d[j];
+    }
+  return P;
+}
+
+// The weights of the components of a state (n): g, times those of its positions and velocities.
+BoundedVector component_weights(double g, const Referee::Weights& w, Eigen::Index n) {
+  BoundedVector G(n);
+  G << BoundedVector::Constant(n / 2, g * w.position), BoundedVector::Constant(n - n / 2, g * w.velocity);
+  return G;
+}
+
 }  // namespace
 
 Correction::Correction(std::shared_ptr<const CorrectionModel> model, const Ensemble& ensemble, CorrectionBounds bounds)
@@ -33,11 +56,12 @@ Correction::Correction(std::shared_ptr<const CorrectionModel> model, const Ensem
   if (bounds_.referee && !ensemble.tracker(inputs_.base()).blocks().measures_position)
     throw InputError("correction", "has a referee, and \"" + model_->design.base + "\" measures no position",
                      "a base that measures positions, or no referee");
+  if (!bounds_.fallback.empty()) fallback_ = member_index(ensemble, bounds_.fallback, *model_->space);
   reset();
 }
 
 void Correction::reset() {
-  tracks_.assign(1, Track{-1, false, inputs_.extractor(), {}});
+  tracks_.assign(1, Track{-1, false, inputs_.extractor(), {}, {}});
   records_.assign(1, StepRecord{});
 }
 
@@ -45,8 +69,8 @@ Correction::Track& Correction::track_of(int id) {
   auto slot = std::find_if(tracks_.begin(), tracks_.end(), [&](const Track& t) { return t.id == id; });
   if (slot == tracks_.end()) {
     slot = std::find_if(tracks_.begin(), tracks_.end(), [](const Track& t) { return !t.seen; });
-    if (slot == tracks_.end()) slot = tracks_.insert(tracks_.end(), Track{id, true, inputs_.extractor(), {}});
-    slot->referee = {};
+    if (slot == tracks_.end()) slot = tracks_.insert(tracks_.end(), Track{id, true, inputs_.extractor(), {}, {}});
+    slot->referee = slot->handover = {};
   }
   slot->id = id;
   slot->seen = true;
@@ -61,17 +85,38 @@ std::span<const StepRecord> Correction::correct(const Ensemble& ensemble) {
         std::any_of(references.begin(), references.end(), [&](const StepRecord& r) { return r.track == track.id; });
 
   for (std::size_t i = 0; i < references.size(); ++i) {
-    const CorrectionInputs::Records step = inputs_.records(ensemble, references[i].track);
+    CorrectionInputs::Records step = inputs_.records(ensemble, references[i].track);
     if (!step.complete()) {
       begin_record(references[i], references[i], records_[i]);
       continue;
     }
     Track& track = track_of(references[i].track);
+    if (fallback_ >= 0)
+      step.reference = &trusted(*step.base, references[i], ensemble.record(fallback_, references[i].track), track);
     inputs_.extract(ensemble, *step.base, track.extractor, features_);
     if (bounds_.referee) track.referee.judge(*step.base, *bounds_.referee);
     correct_record(step, track, records_[i]);
   }
   return {records_.data(), references.size()};
+}
+
+// The reference, or the fallback where that lately foretold better: what lies between them by the referee's weights.
+const StepRecord& Correction::trusted(const StepRecord& base, const StepRecord& reference, const StepRecord* fallback,
+                                      Track& track) {
+  if (!fallback || fallback->status != reference.status || base.status != reference.status) return reference;
+  track.handover.judge(base, *bounds_.referee);
+  const BoundedVector d = reference.x - fallback->x;
+  const BoundedVector G = component_weights(1.0, track.handover.weights(*bounds_.referee), d.size());
+  const BoundedVector x = fallback->x + G.cwiseProduct(d);
+  const BoundedMatrix P = blended(fallback->P, reference.P, d, G);
+  if (!x.allFinite() || !is_covariance(P)) return reference;
+  trusted_.x = x;
+  trusted_.P = P;
+  trusted_.track = reference.track;
+  trusted_.time_s = reference.time_s;
+  trusted_.status = reference.status;
+  if (base.status == StepStatus::ok) track.handover.predict(reference.x, *fallback, x);
+  return trusted_;
 }
 
 void Correction::correct_record(const CorrectionInputs::Records& step, Track& track, StepRecord& corrected) {
@@ -94,9 +139,7 @@ void Correction::correct_record(const CorrectionInputs::Records& step, Track& tr
       gated ? model_->gate->weight(features_, track.extractor.intervals(), disagreement(wanted, P_c, reference.P))
             : 1.0;
   const Referee::Weights w = bounds_.referee ? track.referee.weights(*bounds_.referee) : Referee::Weights{};
-  const Eigen::Index n = reference.x.size(), m = n / 2;
-  BoundedVector G(n);
-  G << BoundedVector::Constant(m, g * w.position), BoundedVector::Constant(n - m, g * w.velocity);
+  const BoundedVector G = component_weights(g, w, reference.x.size());
 
   // Where its parts have weights of their own, a correction may become longer than it was.
   const bool apart = w.position != w.velocity;
@@ -105,15 +148,7 @@ void Correction::correct_record(const CorrectionInputs::Records& step, Track& tr
   const BoundedVector x = within_kappa(reference.x, distance, weighted, bounds_.kappa);
   if (bounds_.referee && base.status == StepStatus::ok) track.referee.predict(reference.x + d, reference, x);
 
-  // Written as a change of P_reference: nothing to correct leaves the covariance as it is, to the bit.
-  BoundedMatrix P(n, n);
-  for (Eigen::Index i = 0; i < n; ++i)
-    for (Eigen::Index j = 0; j < n; ++j) {
-      const double a = G[i] == G[j] ? G[i] : std::sqrt(G[i] * G[j]);
-      const double b = G[i] == G[j] ? 1.0 - G[i] : std::sqrt((1.0 - G[i]) * (1.0 - G[j]));
-      P(i, j) = reference.P(i, j) + a * (P_c(i, j) - reference.P(i, j)) - (1.0 - a - b) * reference.P(i, j) +
-                a * b * d[i] * d[j];
-    }
+  const BoundedMatrix P = blended(reference.P, P_c, d, G);
   if (!x.allFinite() || !is_covariance(P)) return;  // numbers of any size may overflow or cancel: g = 0
   corrected.x = x;
   corrected.P = P;

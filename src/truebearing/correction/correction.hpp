@@ -38,18 +38,23 @@ class Correction {
     int id;
     bool seen;
     FeatureExtractor extractor;
-    Referee referee;
+    Referee referee;   // of the corrected estimate and the one that is trusted
+    Referee handover;  // of the reference and the fallback
   };
 
   Track& track_of(int id);
+  const StepRecord& trusted(const StepRecord& base, const StepRecord& reference, const StepRecord* fallback,
+                            Track& track);
   void correct_record(const CorrectionInputs::Records& step, Track& track, StepRecord& corrected);
 
   std::shared_ptr<const CorrectionModel> model_;
   CorrectionBounds bounds_;
   CorrectionInputs inputs_;
+  int fallback_ = -1;  // its index in the ensemble; -1 where there is none
   std::vector<Track> tracks_;
   std::vector<StepRecord> records_;
   // Work space of one step.
+  StepRecord trusted_;
   CorrectionInputs::Features features_;
   FuzzyNetwork::Strengths phi_;
 };

@@ -12,6 +12,8 @@ void CorrectionBounds::validate() const {
     if (!valid) throw InputError(where, fmt::format("is {}", found), wanted);
   };
   require(kappa > 0.0, "kappa", kappa, "a number > 0, or infinity for none");
+  if (!referee && !fallback.empty())
+    throw InputError("fallback", "is \"" + fallback + "\", and no referee says when it is better", "a referee");
   if (!referee) return;
   require(referee->alpha > 0.0 && referee->alpha <= 1.0, "referee.alpha", referee->alpha, "a number in (0, 1]");
   require(referee->tolerance > 0.0 && std::isfinite(referee->tolerance), "referee.tolerance", referee->tolerance,
@@ -23,7 +25,8 @@ std::string describe(const CorrectionBounds& bounds) {
   std::string text = fmt::format("kappa {}, {}gate, ", bounds.kappa, bounds.gate ? "" : "no ");
   if (!bounds.referee) return text + "no referee";
   const auto& [alpha, tolerance, edge] = *bounds.referee;
-  return text + fmt::format("referee of alpha {}, tolerance {}, edge {}", alpha, tolerance, edge);
+  text += fmt::format("referee of alpha {}, tolerance {}, edge {}", alpha, tolerance, edge);
+  return bounds.fallback.empty() ? text : text + ", fallback " + bounds.fallback;
 }
 
 }  // namespace truebearing

@@ -5,9 +5,8 @@
 #include "truebearing/core/error.hpp"
 
 namespace truebearing {
-namespace {
 
-int member(const Ensemble& ensemble, const std::string& name, const StateSpace& space) {
+int member_index(const Ensemble& ensemble, const std::string& name, const StateSpace& space) {
   const int index = ensemble.index(name);
   if (index < 0) throw InputError("correction", "needs the tracker \"" + name + "\", which does not run beside it");
   if (ensemble.tracker(index).space() != space)
@@ -16,22 +15,20 @@ int member(const Ensemble& ensemble, const std::string& name, const StateSpace& 
   return index;
 }
 
-}  // namespace
-
 OutputUnits::OutputUnits(const FrameRotation& rotation, const StepRecord& base, bool in_sigma)
     : rotation_(rotation), scale_(BoundedVector::Ones(base.x.size())) {
   if (in_sigma) scale_ = rotation.covariance(base.P).diagonal().cwiseSqrt();
 }
 
 CorrectionInputs::CorrectionInputs(const CorrectionDesign& design, const StateSpace& space, const Ensemble& ensemble)
-    : base_(member(ensemble, design.base, space)),
-      reference_(member(ensemble, design.reference, space)),
-      source_(member(ensemble, design.covariance_of, space)),
+    : base_(member_index(ensemble, design.base, space)),
+      reference_(member_index(ensemble, design.reference, space)),
+      source_(member_index(ensemble, design.covariance_of, space)),
       output_in_sigma_(design.output_in_sigma),
       prototype_(design.features, space, design.frame, [&](const std::string& name) {
-        return ensemble.tracker(name.empty() ? base_ : member(ensemble, name, space)).blocks();
+        return ensemble.tracker(name.empty() ? base_ : member_index(ensemble, name, space)).blocks();
       }) {
-  for (const std::string& name : prototype_.companions()) companions_.push_back(member(ensemble, name, space));
+  for (const std::string& name : prototype_.companions()) companions_.push_back(member_index(ensemble, name, space));
   companion_records_.resize(companions_.size());
 }
 

@@ -34,6 +34,9 @@ class OutputUnits {
   BoundedVector scale_;  // D (n)
 };
 
+/// Index of the member of that name; throws InputError where there is none, or one of another state space.
+int member_index(const Ensemble& ensemble, const std::string& name, const StateSpace& space);
+
 class CorrectionInputs {
  public:
   using Features = FeatureExtractor::Features;

@@ -1,5 +1,6 @@
 #include "truebearing/study/correction_spec.hpp"
 
+#include <algorithm>
 #include <toml++/toml.h>
 
 #include "truebearing/core/constants.hpp"
@@ -125,6 +126,13 @@ ChangedScenario read_changed_scenario(TableReader& table, const std::string& key
   return changed;
 }
 
+std::vector<std::string> CorrectionSpec::members() const {
+  std::vector<std::string> names = design.members();
+  const std::string& fallback = bounds.fallback;
+  if (!fallback.empty() && std::find(names.begin(), names.end(), fallback) == names.end()) names.push_back(fallback);
+  return names;
+}
+
 CorrectionSpec read_correction_spec(TableReader& table) {
   CorrectionSpec spec;
   CorrectionDesign& design = spec.design;
@@ -133,6 +141,9 @@ CorrectionSpec read_correction_spec(TableReader& table) {
   design.covariance_of = table.text_or("covariance_of", design.base);
   spec.bounds.kappa = read_kappa(table);
   spec.bounds.referee = read_referee(table);
+  spec.bounds.fallback = table.text_or("fallback", "");
+  if (!spec.bounds.fallback.empty() && !spec.bounds.referee)
+    throw table.error("fallback", "stands without a referee that says when it is better", "referee = true");
   read_gate(table, spec);
   design.frame = frame_of(table.choice_or("frame", frame_names(), "state"));
   design.output_in_sigma = table.choice_or("output_in", {"units", "sigma"}, "units") == "sigma";

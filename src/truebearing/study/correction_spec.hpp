@@ -74,6 +74,9 @@ struct CorrectionSpec {
   BoxSpec box;
   std::filesystem::path model;
   TrainingSpec training;
+
+  /// Names of all trackers that run with it, each once: the design's and the fallback.
+  std::vector<std::string> members() const;
 };
 
 CorrectionSpec read_correction_spec(TableReader& table);

@@ -21,7 +21,7 @@ void Study::check_trackers() {
       check_measured(*tracker, path_.string() + ": trackers." + spec.name, *scenario_, sets_);
       continue;
     }
-    for (const std::string& member : spec.correction->design.members())
+    for (const std::string& member : spec.correction->members())
       if (tracker(member).correction)
         throw InputError(path_.string() + ": trackers." + spec.name,
                          "looks at \"" + member + "\", which is itself corrected", "trackers of other kinds");

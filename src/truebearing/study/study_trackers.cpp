@@ -48,7 +48,7 @@ std::unique_ptr<Tracker> Study::make_tracker(const std::string& name, const Corr
   const TrackerSpec& spec = tracker(name);
   if (spec.correction) {
     const auto given = models.find(name);
-    return std::make_unique<CorrectedTracker>(make_ensemble(spec.correction->design.members()),
+    return std::make_unique<CorrectedTracker>(make_ensemble(spec.correction->members()),
                                               given == models.end() ? load_model(name) : given->second,
                                               spec.correction->bounds);
   }
@@ -73,7 +73,7 @@ TrackerSet Study::make_tracker_set(const CorrectionModels& models) const {
       add(spec.name);
       continue;
     }
-    for (const std::string& member : spec.correction->design.members()) add(member);
+    for (const std::string& member : spec.correction->members()) add(member);
   }
   TrackerSet set(make_ensemble(members));
   for (const TrackerSpec& spec : trackers_) {

@@ -7,7 +7,7 @@
 #include <complex>
 #include <vector>
 
-#include "truebearing/array/simd_lanes.hpp"
+#include "truebearing/core/simd_lanes.hpp"
 #include "truebearing/measurement/snapshot_block.hpp"
 
 namespace truebearing {

@@ -1,6 +1,6 @@
 #include "truebearing/array/outer_product_kernel.hpp"
 
-#include "truebearing/array/simd_lanes.hpp"
+#include "truebearing/core/simd_lanes.hpp"
 #include "truebearing/core/simd_dispatch.hpp"
 
 namespace truebearing::kernels {

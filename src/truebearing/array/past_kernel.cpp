@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "truebearing/array/simd_lanes.hpp"
+#include "truebearing/core/simd_lanes.hpp"
 #include "truebearing/core/simd_dispatch.hpp"
 #include "truebearing/core/with_count.hpp"
 

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "truebearing/array/outer_product_kernel.hpp"
-#include "truebearing/array/simd_lanes.hpp"
+#include "truebearing/core/simd_lanes.hpp"
 
 namespace truebearing {
 void RealInterval::take(const Interval& interval, int blocks) {

@@ -7,13 +7,11 @@
 #include <utility>
 
 #include "truebearing/core/error.hpp"
+#include "truebearing/correction/rule_strengths_kernel.hpp"
 
 namespace truebearing {
 namespace {
 
-// exp(-700) is the smallest round power that is still a normal number: denormal strengths mean nothing and cost a
-// hundred cycles each.
-constexpr double kLowestExponent = -700.0;
 // Scaled centre of a rule that only fills up a block: its exponent is the lowest of all.
 constexpr double kNeverFires = 1e154;
 
@@ -93,16 +91,13 @@ void FuzzyNetwork::strengths(const Inputs& input, Strengths& phi) const {
     }
     u[i] = std::clamp(standardised, -parameters_.input_clip, parameters_.input_clip);
   }
-  const Eigen::Index blocks = inverse_widths_.cols() / d;
-  Eigen::Array<double, kLanes, Eigen::Dynamic, 0, kLanes, kMaxRules / kLanes> exponents(kLanes, blocks);
-  for (Eigen::Index b = 0; b < blocks; ++b) {
-    Block exponent = Block::Zero();
-    for (Eigen::Index i = 0; i < d; ++i)
-      exponent -= (u[i] * inverse_widths_.col(b * d + i) - scaled_centres_.col(b * d + i)).square();
-    exponents.col(b) = exponent;
-  }
-  exponents = (exponents - exponents.maxCoeff()).max(kLowestExponent).exp();
-  phi = Eigen::Map<const Eigen::VectorXd>(exponents.data(), rules()) / exponents.sum();
+  // Of whole blocks: behind the last rule phi has room for the lanes that fill up.
+  static_assert(kMaxRules % kLanes == 0);
+  kernels::rule_strengths({.blocks = static_cast<int>(inverse_widths_.cols() / d),
+                           .inputs = static_cast<int>(d),
+                           .centres = scaled_centres_.data(),
+                           .inverse_widths = inverse_widths_.data()},
+                          u.data(), phi.data());
 }
 
 FuzzyNetwork::Outputs FuzzyNetwork::output(const Strengths& phi) const {

@@ -12,6 +12,7 @@
 #include <Eigen/Core>
 
 #include "truebearing/core/bounded.hpp"
+#include "truebearing/core/simd_lanes.hpp"
 
 namespace truebearing {
 
@@ -53,8 +54,6 @@ class FuzzyNetwork {
 
  private:
   // Rules are evaluated kLanes at a time; those that fill up the last block never fire.
-  static constexpr int kLanes = 4;
-  using Block = Eigen::Array<double, kLanes, 1>;
   using Blocks = Eigen::Array<double, kLanes, Eigen::Dynamic>;
 
   Parameters parameters_;

@@ -9,8 +9,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "truebearing/core/covariance.hpp"
+#include "truebearing/core/with_count.hpp"
 #include "truebearing/correction/fuzzy_network.hpp"
 #include "truebearing/correction/interval_memory.hpp"
 
@@ -19,7 +21,13 @@ namespace truebearing {
 /// How far apart two estimates are, d (n), for what they claim, P_a and P_b (n x n): the root of d' (P_a + P_b)^-1 d.
 /// NaN where that has no value.
 inline double disagreement(const BoundedVector& d, const BoundedMatrix& P_a, const BoundedMatrix& P_b) {
-  return std::sqrt(mahalanobis_squared(P_a + P_b, d));
+  double squared = 0.0;
+  with_count(static_cast<int>(d.size()), [&]<int N>(std::integral_constant<int, N>) {
+    using Matrix = Eigen::Map<const Eigen::Matrix<double, N, N>>;
+    squared = mahalanobis_squared(Matrix(P_a.data()) + Matrix(P_b.data()),
+                                  Eigen::Map<const Eigen::Matrix<double, N, 1>>(d.data()));
+  });
+  return std::sqrt(squared);
 }
 
 /// The intervals that were taught, of the last few of a track (interval_memory.hpp) the shortest and the longest, and the

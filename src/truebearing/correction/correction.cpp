@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 
 #include "truebearing/core/covariance.hpp"
 #include "truebearing/core/error.hpp"
+#include "truebearing/core/unfilled.hpp"
+#include "truebearing/core/with_count.hpp"
 #include "truebearing/correction/limit_kappa.hpp"
 
 namespace truebearing {
@@ -21,24 +24,46 @@ void begin_record(const StepRecord& step, const StepRecord& reference, StepRecor
   corrected.sensor = step.sensor;
   corrected.x = reference.x;
   corrected.P = reference.P;
-  corrected.correction.emplace();
+  corrected.correction.emplace(Unfilled());
 }
 
-// What is published of an estimate that is to move by d, its covariance with it from P to P_moved, by the weights G (n)
-// of the components: P + G (P_moved - P) G' and so on where all weights are one g, with the spread of what lies between.
-// Written as a change of P: nothing to move leaves the covariance as it is, to the bit.
-BoundedMatrix blended(const BoundedMatrix& P_from, const BoundedMatrix& P_moved, const BoundedVector& d,
-                      const BoundedVector& G) {
-  const Eigen::Index n = d.size();
-  BoundedMatrix P(n, n);
-  for (Eigen::Index i = 0; i < n; ++i)
-    for (Eigen::Index j = 0; j < n; ++j) {
-      const double a = G[i] == G[j] ? G[i] : std::sqrt(G[i] * G[j]);
-      const double b = G[i] == G[j] ? 1.0 - G[i] : std::sqrt((1.0 - G[i]) * (1.0 - G[j]));
-      P(i, j) = P_from(i, j) + a * (P_moved(i, j) - P_from(i, j)) - (1.0 - a - b) * P_from(i, j) + a * b * d[i] * d[j];
-    }
-  return P;
-}
+// What the weights g of what a correction says make of the covariances: a and b are the roots of g_i g_j and (1 - g_i)
+// (1 - g_j), of positions (0) and velocities (1).
+struct Blend {
+  double a[2][2];
+  double b[2][2];
+
+  Blend(double position, double velocity) {
+    const double g[2] = {position, velocity};
+    for (int i = 0; i < 2; ++i)
+      for (int j = 0; j < 2; ++j) {
+        a[i][j] = g[i] == g[j] ? g[i] : std::sqrt(g[i] * g[j]);
+        b[i][j] = g[i] == g[j] ? 1.0 - g[i] : std::sqrt((1.0 - g[i]) * (1.0 - g[j]));
+      }
+  }
+
+  // Written as a change of P_reference: nothing to correct leaves the covariance as it is, to the bit. False where the
+  // result P is no covariance.
+  bool covariance(const BoundedMatrix& P_c, const BoundedMatrix& P_reference, const BoundedVector& d,
+                  BoundedMatrix& P) const {
+    const auto n = static_cast<int>(d.size());
+    bool valid = false;
+    P.resize(n, n);
+    with_count(n, [&]<int N>(std::integral_constant<int, N>) {
+      const double *c = P_c.data(), *reference = P_reference.data();
+      Eigen::Matrix<double, N, N> blended;
+      for (int j = 0; j < N; ++j)
+        for (int i = 0; i < N; ++i, ++c, ++reference) {
+          const double a_ij = a[i >= N / 2][j >= N / 2], b_ij = b[i >= N / 2][j >= N / 2];
+          blended(i, j) = *reference + a_ij * (*c - *reference) - (1.0 - a_ij - b_ij) * *reference +
+                          a_ij * b_ij * d.data()[i] * d.data()[j];
+        }
+      valid = is_covariance(blended);
+      Eigen::Map<Eigen::Matrix<double, N, N>>(P.data()) = blended;
+    });
+    return valid;
+  }
+};
 
 // The weights of the components of a state (n): g, times those of its positions and velocities.
 BoundedVector component_weights(double g, const Referee::Weights& w, Eigen::Index n) {
@@ -108,10 +133,9 @@ const StepRecord& Correction::trusted(const StepRecord& base, const StepRecord& 
   const BoundedVector d = reference.x - fallback->x;
   const BoundedVector G = component_weights(1.0, track.handover.weights(*bounds_.referee), d.size());
   const BoundedVector x = fallback->x + G.cwiseProduct(d);
-  const BoundedMatrix P = blended(fallback->P, reference.P, d, G);
-  if (!x.allFinite() || !is_covariance(P)) return reference;
+  const bool valid = Blend(G[0], G[G.size() - 1]).covariance(reference.P, fallback->P, d, trusted_.P);
+  if (!x.allFinite() || !valid) return reference;
   trusted_.x = x;
-  trusted_.P = P;
   trusted_.track = reference.track;
   trusted_.time_s = reference.time_s;
   trusted_.status = reference.status;
@@ -148,8 +172,9 @@ void Correction::correct_record(const CorrectionInputs::Records& step, Track& tr
   const BoundedVector x = within_kappa(reference.x, distance, weighted, bounds_.kappa);
   if (bounds_.referee && base.status == StepStatus::ok) track.referee.predict(reference.x + d, reference, x);
 
-  const BoundedMatrix P = blended(reference.P, P_c, d, G);
-  if (!x.allFinite() || !is_covariance(P)) return;  // numbers of any size may overflow or cancel: g = 0
+  BoundedMatrix P;
+  const bool valid = Blend(G[0], G[G.size() - 1]).covariance(P_c, reference.P, d, P);
+  if (!x.allFinite() || !valid) return;  // numbers of any size may overflow or cancel: g = 0
   corrected.x = x;
   corrected.P = P;
   corrected.correction->gate = G.mean();

@@ -43,13 +43,19 @@ class Referee {
     const BoundedVector& z = base.innovation->z;
     const Eigen::Index m = base.x.size() / 2;
     if (z.size() != m) return;
-    for (std::size_t age = 0; age < count_; ++age) {
-      const Foretold& foretold = foretold_[age];
+    const std::size_t count = std::min(foretold_steps_, kAhead);
+    for (std::size_t age = 0; age < count; ++age) {
+      const Foretold& foretold = foretold_[(foretold_steps_ - 1 - age) % kAhead];
       const double dt_s = base.time_s - foretold.time_s;
       if (foretold.published.size() != 2 * m || !(dt_s > 0.0)) continue;
       const double claimed = base.innovation->S.trace() + dt_s * dt_s * foretold.velocity_variance;
       const auto squared_error = [&](const BoundedVector& position, const BoundedVector& velocity) {
-        return (z - position.head(m) - dt_s * velocity.tail(m)).squaredNorm() / claimed;
+        double squared = 0.0;
+        for (Eigen::Index i = 0; i < m; ++i) {
+          const double error = z[i] - position[i] - dt_s * velocity[m + i];
+          squared += error * error;
+        }
+        return squared / claimed;
       };
       const auto take = [&](Averages& averages, double corrected, double reference, double share) {
         averages.corrected += share * options.alpha * (corrected - averages.corrected);
@@ -60,17 +66,16 @@ class Referee {
         take(position_, squared_error(foretold.corrected, foretold.published),
              squared_error(foretold.reference, foretold.published), 1.0);
       take(velocity_, squared_error(foretold.published, foretold.corrected),
-           squared_error(foretold.published, foretold.reference), 1.0 / static_cast<double>(count_));
+           squared_error(foretold.published, foretold.reference), 1.0 / static_cast<double>(count));
     }
   }
 
   /// What the next measurements will be held against, of a step that used one: the corrected estimate before any
   /// weight, the reference's record, and what was published.
   void predict(const BoundedVector& corrected, const StepRecord& reference, const BoundedVector& published) {
-    std::shift_right(foretold_.begin(), foretold_.end(), 1);
     const Eigen::Index m = published.size() / 2;
-    foretold_.front() = {reference.time_s, corrected, reference.x, published, reference.P.diagonal().tail(m).sum()};
-    count_ = std::min(count_ + 1, kAhead);
+    foretold_[foretold_steps_++ % kAhead] = {reference.time_s, corrected, reference.x, published,
+                                             reference.P.diagonal().tail(m).sum()};
   }
 
   Weights weights(const RefereeOptions& options) const {
@@ -99,8 +104,8 @@ class Referee {
     return std::isfinite(weight) ? weight : 0.0;
   }
 
-  std::array<Foretold, kAhead> foretold_;  // the newest first
-  std::size_t count_ = 0;
+  std::array<Foretold, kAhead> foretold_;  // step k in place k % kAhead
+  std::size_t foretold_steps_ = 0;
   Averages position_;
   Averages velocity_;
 };

@@ -6,19 +6,11 @@
 #include <type_traits>
 #include <utility>
 
+#include "truebearing/core/unfilled.hpp"
 #include "truebearing/core/with_count.hpp"
 
 namespace truebearing {
 namespace {
-
-// For optional::emplace(), which by itself would first fill with zeros all that a block has room for.
-struct Unfilled {
-  template <typename Block>
-  operator Block() const {  // NOLINT: that is what it is for
-    Block block;
-    return block;
-  }
-};
 
 // Updates that fail one after another, until the track is given up.
 constexpr int kFailedInRow = 3;

@@ -152,13 +152,13 @@ class UnscentedKalmanFilter {
     return mean;
   }
 
-  /// A + sum w d d' into A.
+  /// A + sum w d d' into A, in its lower triangle.
   template <int Rows>
   static void add_squares(const Points<Rows>& d, Eigen::Matrix<Scalar, Rows, Rows>& A) {
     for (int i = 0; i < kPoints; ++i) {
       const Scalar weight = i == 0 ? kCentreWeight : kWeight;
       for (int col = 0; col < Rows; ++col)
-        for (int row = 0; row < Rows; ++row) A(row, col) += weight * d(row, i) * d(col, i);
+        for (int row = col; row < Rows; ++row) A(row, col) += weight * d(row, i) * d(col, i);
     }
   }
 

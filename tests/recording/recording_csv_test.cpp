@@ -256,7 +256,6 @@ TEST(RecordingReader, GivesEachRowAsSoonAsItHasCome) {
   RecordingReader reader(stream, "log.csv");
   EXPECT_EQ(lines.given(), 1u) << "the header";
   EXPECT_EQ(reader.truth_space(), &line_space());
-  EXPECT_THAT(reader.given_truth(), ElementsAre(true, false));
   ASSERT_TRUE(reader.next());
   EXPECT_EQ(lines.given(), 2u) << "and no row further";
   EXPECT_TRUE(reader.may_wait());

@@ -214,19 +214,8 @@ BoundedVector read_truth(const CsvLayout& layout, const std::vector<double>& row
 
 Recording read_rows(RecordingReader reader) {
   Recording recording;
-  recording.measured = reader.measured();
-  recording.truth_space = reader.truth_space();
-  if (recording.truth_space) recording.truth.resize(1);
-  std::vector<double> time_s;
-  while (reader.next()) {
-    recording.measurements.push_back(reader.measurement());
-    if (!recording.truth_space) continue;
-    recording.truth[0].x.push_back(reader.truth());
-    time_s.push_back(reader.measurement().time_s);
-  }
-  recording.counts = reader.counts();
-  if (recording.truth_space)
-    complete_velocities(*recording.truth_space, reader.given_truth(), time_s, recording.truth[0].x);
+  while (reader.next()) reader.append_to(recording);
+  reader.complete(recording);
   return recording;
 }
 
@@ -276,12 +265,6 @@ const StateSpace* RecordingReader::truth_space() const {
   return log_->layout.truth_space;
 }
 
-std::vector<bool> RecordingReader::given_truth() const {
-  std::vector<bool> given;
-  for (const auto& column : log_->layout.truth) given.push_back(column.has_value());
-  return given;
-}
-
 bool RecordingReader::next() {
   CsvReader& csv = log_->csv;
   const CsvLayout& layout = log_->layout;
@@ -322,6 +305,25 @@ const Recording::Counts& RecordingReader::counts() const {
 
 bool RecordingReader::may_wait() const {
   return log_->csv.may_wait();
+}
+
+void RecordingReader::append_to(Recording& recording) const {
+  recording.measurements.push_back(log_->measurement);
+  if (!truth_space()) return;
+  recording.truth.resize(1);
+  recording.truth[0].x.push_back(log_->truth);
+}
+
+void RecordingReader::complete(Recording& recording) const {
+  recording.measured = measured();
+  recording.truth_space = truth_space();
+  recording.counts = counts();
+  if (!truth_space()) return;
+  std::vector<double> time_s;
+  for (const Measurement& measurement : recording.measurements) time_s.push_back(measurement.time_s);
+  std::vector<bool> given;
+  for (const auto& column : log_->layout.truth) given.push_back(column.has_value());
+  complete_velocities(*truth_space(), given, time_s, recording.truth[0].x);
 }
 
 Recording read_recording(const std::filesystem::path& path) {

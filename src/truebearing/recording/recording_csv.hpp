@@ -30,8 +30,6 @@ class RecordingReader {
 
   const std::vector<std::string>& measured() const;
   const StateSpace* truth_space() const;  ///< nullptr where the log has no truth
-  /// By component of the truth space: whether the log has a column of it.
-  std::vector<bool> given_truth() const;
 
   /// Moves to the next measurement; false at the end. Throws where the log has none at all.
   bool next();
@@ -42,6 +40,11 @@ class RecordingReader {
   const Recording::Counts& counts() const;
   /// Whether to ask for the next row may have to wait for who writes the log.
   bool may_wait() const;
+
+  /// Appends the row to a recording that began empty; complete() after the last one gives it what the columns and all
+  /// rows together say.
+  void append_to(Recording& recording) const;
+  void complete(Recording& recording) const;
 
  private:
   struct Log;

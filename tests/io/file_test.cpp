@@ -115,6 +115,21 @@ TEST_F(FileTest, OfTwoWritersOneWinsWhole) {
   EXPECT_EQ(files(), 1);
 }
 
+TEST_F(FileTest, WriterLeavesNothingBehindWithoutCommit) {
+  const std::filesystem::path path = folder_ / "pieces.txt";
+  {
+    FileWriter writer(path);
+    writer.write("one ");
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder_));
+  FileWriter writer(path);
+  writer.write("one ");
+  writer.write("two");
+  EXPECT_FALSE(std::filesystem::exists(path)) << "not before it is whole";
+  writer.commit();
+  EXPECT_EQ(read_text_file(path, 100), "one two");
+}
+
 TEST_F(FileTest, NameLeftOverFromAKilledWriterIsPassedOver) {
   const auto leftover = [&](int i) {
     return folder_ / (".truebearing-" + std::to_string(::getpid()) + "-" + std::to_string(i) + ".tmp");

@@ -22,6 +22,8 @@ InputError system_error(const std::filesystem::path& path, const char* action, i
   return {path.string(), fmt::format("cannot be {}: {}", action, std::strerror(code))};
 }
 
+}  // namespace
+
 class FileDescriptor {
  public:
   explicit FileDescriptor(int descriptor) : descriptor_(descriptor) {}
@@ -55,8 +57,10 @@ class TemporaryFile {
       if (written < 0) return false;
       text.remove_prefix(static_cast<std::size_t>(written));
     }
-    return ::fsync(file_.get()) == 0 && file_.close();
+    return true;
   }
+
+  bool close() { return ::fsync(file_.get()) == 0 && file_.close(); }
 
   bool rename_to(const std::filesystem::path& target) {
     renamed_ = std::rename(path_.c_str(), target.c_str()) == 0;
@@ -83,6 +87,8 @@ class TemporaryFile {
   FileDescriptor file_;
   bool renamed_ = false;
 };
+
+namespace {
 
 /// The file that `path` leads to, so that a symbolic link stays one. Devices and directories cannot be replaced.
 std::filesystem::path replaceable_target(const std::filesystem::path& path) {
@@ -149,15 +155,38 @@ std::string read_text_file(const std::filesystem::path& path, std::size_t max_by
   }
 }
 
-void write_file_atomically(const std::filesystem::path& path, std::string_view text) {
-  const std::filesystem::path target = replaceable_target(path);
-  TemporaryFile temporary(target);
-  if (!temporary.write(text) || !temporary.rename_to(target)) throw system_error(path, "written", errno);
+struct FileWriter::Target {
+  explicit Target(const std::filesystem::path& named)
+      : path(named), replaced(replaceable_target(named)), temporary(replaced) {}
+
+  std::filesystem::path path;
+  std::filesystem::path replaced;
+  TemporaryFile temporary;
+};
+
+FileWriter::FileWriter(const std::filesystem::path& path) : target_(std::make_unique<Target>(path)) {}
+
+FileWriter::~FileWriter() = default;
+
+void FileWriter::write(std::string_view text) {
+  if (!target_->temporary.write(text)) throw system_error(target_->path, "written", errno);
+}
+
+void FileWriter::commit() {
+  if (!target_->temporary.close() || !target_->temporary.rename_to(target_->replaced))
+    throw system_error(target_->path, "written", errno);
 
   // The rename is on disk once the folder is. Not every file system can do that, and the file is whole either way.
-  const std::filesystem::path folder = target.has_parent_path() ? target.parent_path() : ".";
-  const FileDescriptor directory(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  const std::filesystem::path& replaced = target_->replaced;
+  const FileDescriptor directory(
+      ::open(replaced.has_parent_path() ? replaced.parent_path().c_str() : ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (directory.get() >= 0) ::fsync(directory.get());
+}
+
+void write_file_atomically(const std::filesystem::path& path, std::string_view text) {
+  FileWriter file(path);
+  file.write(text);
+  file.commit();
 }
 
 }  // namespace truebearing

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,23 @@ std::string read_text_file(const std::filesystem::path& path, std::size_t max_by
 /// The files that a pattern stands for, sorted by name: in the file's name, * is any text. A pattern without it is the
 /// file itself, there or not. Throws InputError where nothing matches, or where a folder's name holds a *.
 std::vector<std::filesystem::path> matching_files(const std::filesystem::path& pattern);
+
+/// A file that is written piece by piece: commit() flushes it to disk and gives it its name, as write_file_atomically()
+/// does; without it nothing is left behind. Throws InputError.
+class FileWriter {
+ public:
+  explicit FileWriter(const std::filesystem::path& path);
+  ~FileWriter();
+  FileWriter(const FileWriter&) = delete;
+  FileWriter& operator=(const FileWriter&) = delete;
+
+  void write(std::string_view text);
+  void commit();
+
+ private:
+  struct Target;
+  std::unique_ptr<Target> target_;
+};
 
 /// Writes to a temporary name of its own beside `path`, flushes it to disk and renames it: after a crash, a full disk
 /// or a second writer, the file is the old one or one writer's whole text. Throws InputError; leaves nothing behind on

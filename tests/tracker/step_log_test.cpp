@@ -211,5 +211,23 @@ TEST(StepLog, RowsCanBePutInTheOrderOfTheirTimes) {
   EXPECT_EQ(log.records[2].track, 1);
 }
 
+TEST(StepLog, RowsCanBeTakenAsTheyCome) {
+  StepLogWriter whole(line_space(), 1), pieces(line_space(), 1);
+  std::string text;
+  for (const StepRecord& record : records_of_a_tracker()) {
+    whole.add("plain", record);
+    pieces.add("plain", record);
+    text += pieces.take();
+  }
+  EXPECT_EQ(text, whole.str());
+  EXPECT_EQ(pieces.take(), "");
+}
+
+TEST(StepLog, InnovationOfFewerComponentsFillsTheFirst) {
+  StepLogWriter writer(line_space(), 2);
+  writer.add("plain", records_of_a_tracker()[0]);
+  EXPECT_THAT(writer.str(), ::testing::ContainsRegex("\n1,plain(,[^,\n]+){7},[^,\n]+,,[^,\n]+,,[^,\n]+,,\n"));
+}
+
 }  // namespace
 }  // namespace truebearing::step_log_test

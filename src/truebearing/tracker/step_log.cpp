@@ -7,7 +7,6 @@
 
 #include "truebearing/core/covariance.hpp"
 #include "truebearing/core/error.hpp"
-#include "truebearing/io/csv.hpp"
 
 namespace truebearing {
 namespace {
@@ -71,6 +70,20 @@ StepStatus read_status(const CsvReader& csv, int column) {
     if (text == to_string(status)) return status;
   throw csv.error(static_cast<std::size_t>(column), fmt::format("\"{}\" is no status", text),
                   "ok, rejected, coasted, unobservable, failed");
+}
+
+std::vector<std::string> log_header(const StateSpace& space, int measurements) {
+  std::vector<std::string> header{"time_s", "tracker", "track", "status"};
+  for (const std::string& component : space.components) header.push_back("x_" + component);
+  const auto add_triangle = [&](const char* name, int size) {
+    for (int i = 1; i <= size; ++i)
+      for (int j = i; j <= size; ++j) header.push_back(fmt::format("{}_{}_{}", name, i, j));
+  };
+  add_triangle("P", space.size());
+  for (int i = 1; i <= measurements; ++i) header.push_back(fmt::format("z_{}", i));
+  for (int i = 1; i <= measurements; ++i) header.push_back(fmt::format("nu_{}", i));
+  add_triangle("S", measurements);
+  return header;
 }
 
 StepLog read_rows(CsvReader& csv, const std::string& tracker) {
@@ -151,46 +164,41 @@ StepLog read_step_log(std::istream& stream, const std::string& name, const std::
 }
 
 StepLogWriter::StepLogWriter(const StateSpace& space, int measurements)
-    : states_(space.size()), measurements_(measurements), header_{"time_s", "tracker", "track", "status"} {
-  for (const std::string& component : space.components) header_.push_back("x_" + component);
-  const auto add_triangle = [this](const char* name, int size) {
-    for (int i = 1; i <= size; ++i)
-      for (int j = i; j <= size; ++j) header_.push_back(fmt::format("{}_{}_{}", name, i, j));
-  };
-  add_triangle("P", states_);
-  for (int i = 1; i <= measurements_; ++i) header_.push_back(fmt::format("z_{}", i));
-  for (int i = 1; i <= measurements_; ++i) header_.push_back(fmt::format("nu_{}", i));
-  add_triangle("S", measurements_);
-}
+    : states_(space.size()), measurements_(measurements), csv_(log_header(space, measurements)), header_(csv_.take()) {}
 
 void StepLogWriter::add(const std::string& tracker, const StepRecord& record) {
-  rows_.push_back({tracker, record});
+  csv_.number(record.time_s);
+  csv_.text(tracker);
+  csv_.number(record.track);
+  csv_.text(to_string(record.status));
+  for (int i = 0; i < states_; ++i) csv_.number(record.x[i]);
+  for (int i = 0; i < states_; ++i)
+    for (int j = i; j < states_; ++j) csv_.number(record.P(i, j));
+  const int told = record.innovation ? static_cast<int>(record.innovation->nu.size()) : 0;
+  const bool has_z = told > 0 && record.innovation->z.size() == told;
+  for (int i = 0; i < measurements_; ++i) csv_.number(has_z && i < told ? record.innovation->z[i] : kMissing);
+  for (int i = 0; i < measurements_; ++i) csv_.number(i < told ? record.innovation->nu[i] : kMissing);
+  for (int i = 0; i < measurements_; ++i)
+    for (int j = i; j < measurements_; ++j) csv_.number(j < told ? record.innovation->S(i, j) : kMissing);
+  csv_.end_row();
+  rows_.push_back({record.time_s, csv_.take()});
 }
 
 void StepLogWriter::sort_by_time() {
-  std::stable_sort(rows_.begin(), rows_.end(),
-                   [](const Row& a, const Row& b) { return a.record.time_s < b.record.time_s; });
+  std::stable_sort(rows_.begin(), rows_.end(), [](const Row& a, const Row& b) { return a.time_s < b.time_s; });
 }
 
 std::string StepLogWriter::str() const {
-  CsvWriter csv(header_);
-  for (const auto& [tracker, record] : rows_) {
-    csv.number(record.time_s);
-    csv.text(tracker);
-    csv.number(record.track);
-    csv.text(to_string(record.status));
-    for (int i = 0; i < states_; ++i) csv.number(record.x[i]);
-    for (int i = 0; i < states_; ++i)
-      for (int j = i; j < states_; ++j) csv.number(record.P(i, j));
-    const bool has = record.innovation && record.innovation->nu.size() == measurements_;
-    const bool has_z = has && record.innovation->z.size() == measurements_;
-    for (int i = 0; i < measurements_; ++i) csv.number(has_z ? record.innovation->z[i] : kMissing);
-    for (int i = 0; i < measurements_; ++i) csv.number(has ? record.innovation->nu[i] : kMissing);
-    for (int i = 0; i < measurements_; ++i)
-      for (int j = i; j < measurements_; ++j) csv.number(has ? record.innovation->S(i, j) : kMissing);
-    csv.end_row();
-  }
-  return csv.str();
+  std::string text = header_;
+  for (const Row& row : rows_) text += row.text;
+  return text;
+}
+
+std::string StepLogWriter::take() {
+  std::string text = str();
+  header_.clear();
+  rows_.clear();
+  return text;
 }
 
 }  // namespace truebearing

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "truebearing/io/csv.hpp"
 #include "truebearing/tracker/step_record.hpp"
 
 namespace truebearing {
@@ -33,21 +34,26 @@ StepLog read_step_log(std::istream& stream, const std::string& name, const std::
 /// Builds a step log. All records must be of one state space; blocks that a record has not become empty cells.
 class StepLogWriter {
  public:
-  /// measurements: size of z; 0 leaves the innovation's columns out.
+  /// measurements: size of z; 0 leaves the innovation's columns out. Innovations of fewer components fill the first
+  /// ones.
   StepLogWriter(const StateSpace& space, int measurements);
 
   void add(const std::string& tracker, const StepRecord& record);
   /// Puts the rows in the order of their times, which a log must have; rows of one time stay as they were added.
   void sort_by_time();
   std::string str() const;
+  /// The rows since the last take(), which are then forgotten: with the header before the first of them. So a log can
+  /// be written as its records come.
+  std::string take();
 
  private:
   int states_;
   int measurements_;
-  std::vector<std::string> header_;
+  CsvWriter csv_;
+  std::string header_;  // until it is taken
   struct Row {
-    std::string tracker;
-    StepRecord record;
+    double time_s;
+    std::string text;
   };
   std::vector<Row> rows_;
 };

@@ -21,15 +21,18 @@ inline std::vector<const RunScore*> pointers(const std::vector<RunScore>& runs) 
 /// The family's figures of these runs.
 inline std::vector<Metric> figures(const MetricFamily& family, const Scorer& scorer, const std::vector<RunScore>& runs,
                                    const ScoringRule& rule = {}) {
-  return family.finish({rule, scorer, pointers(runs)});
+  const std::unique_ptr<MetricTally> tally = family.tally(rule, scorer);
+  for (const RunScore& run : runs) tally->add(run);
+  return tally->metrics();
 }
 
 /// The same of runs of two trackers with the same state: a - b.
 inline std::vector<PairedDifference> paired(const MetricFamily& family, const Scorer& scorer,
                                             const std::vector<RunScore>& a, const std::vector<RunScore>& b,
                                             const ScoringRule& rule = {}) {
-  const std::vector<const RunScore*> of_a = pointers(a), of_b = pointers(b);
-  return family.paired({rule, scorer, of_a}, {rule, scorer, of_b});
+  const std::unique_ptr<PairTally> tally = family.pair_tally(rule, scorer, scorer);
+  for (std::size_t run = 0; run < a.size(); ++run) tally->add(a[run], b[run]);
+  return tally->differences();
 }
 
 inline bool has_metric(const std::vector<Metric>& metrics, const std::string& name) {

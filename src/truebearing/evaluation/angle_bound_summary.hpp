@@ -6,6 +6,7 @@
 
 #include "truebearing/evaluation/angle_bound.hpp"
 #include "truebearing/evaluation/metric.hpp"
+#include "truebearing/evaluation/samples.hpp"
 
 namespace truebearing {
 
@@ -21,9 +22,28 @@ struct AngleBoundSummary {
   std::vector<Quantity> quantities;
 };
 
-/// runs: [run]. Two bounds: `cramer_rao_apart`, of the angle, over the intervals in which a target is apart from every
-/// other, for where targets meet it is infinite; `posterior`, of angle and rate, over all. Their metrics are `mse` and
-/// `rate_mse`.
+/// Takes the variances of run by run in the order of their numbers, and keeps their sums. Two bounds:
+/// `cramer_rao_apart`, of the angle, over the intervals in which a target is apart from every other, for where targets
+/// meet it is infinite; `posterior`, of angle and rate, over all. Their metrics are `mse` and `rate_mse`.
+class AngleBoundTally {
+ public:
+  void add(const AngleVariances& run);
+  std::vector<AngleBoundSummary> summaries() const;
+
+ private:
+  // Of one quantity of one bound.
+  struct Sums {
+    template <typename Variance>
+    void add(const AngleVariances& run, const Variance& variance);
+    AngleBoundSummary::Quantity summary(const char* name, const char* metric) const;
+
+    RunErrors runs;
+    std::vector<SquaredErrors> steps;
+  };
+  Sums apart_, angle_, rate_;
+};
+
+/// The same of all runs at once: [run].
 std::vector<AngleBoundSummary> summarise_angle_bounds(const std::vector<const AngleVariances*>& runs);
 
 }  // namespace truebearing

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "truebearing/evaluation/run_score.hpp"
-#include "truebearing/evaluation/statistics.hpp"
+#include "truebearing/evaluation/samples.hpp"
 
 namespace truebearing {
 namespace {
@@ -23,6 +23,28 @@ class BatchRun final : public BatchFigures {
   std::vector<int> steps_;
 };
 
+class BatchTally final : public MetricTally {
+ public:
+  void add(const RunScore& run) override {
+    const auto* figures = run.of<BatchFigures>();
+    if (!figures) return;
+    for (const std::optional<BatchOutcome>& batch : figures->at_times) {
+      if (!batch) continue;
+      non_finite_.add(batch->non_finite_starts);
+      iterations_.add(batch->iterations);
+    }
+  }
+
+  std::vector<Metric> metrics() const override {
+    if (non_finite_.empty()) return {};
+    return {{"non_finite_starts", "1", std::nullopt, non_finite_.mean().value, std::nan("")},
+            {"iterations", "1", std::nullopt, iterations_.mean().value, std::nan("")}};
+  }
+
+ private:
+  Samples non_finite_, iterations_;
+};
+
 class BatchMetrics final : public MetricFamily {
  public:
   std::unique_ptr<RunFigures> begin(const RunStart& run) const override {
@@ -30,20 +52,8 @@ class BatchMetrics final : public MetricFamily {
     return std::make_unique<BatchRun>(run.time_steps);
   }
 
-  std::vector<Metric> finish(const TrackerRuns& runs) const override {
-    std::vector<double> non_finite, iterations;
-    for (const RunScore* run : runs.scores) {
-      const auto* figures = run->of<BatchFigures>();
-      if (!figures) continue;
-      for (const std::optional<BatchOutcome>& batch : figures->at_times) {
-        if (!batch) continue;
-        non_finite.push_back(batch->non_finite_starts);
-        iterations.push_back(batch->iterations);
-      }
-    }
-    if (non_finite.empty()) return {};
-    return {{"non_finite_starts", "1", std::nullopt, mean_of(non_finite).value, std::nan("")},
-            {"iterations", "1", std::nullopt, mean_of(iterations).value, std::nan("")}};
+  std::unique_ptr<MetricTally> tally(const ScoringRule&, const Scorer&) const override {
+    return std::make_unique<BatchTally>();
   }
 };
 
@@ -53,22 +63,28 @@ std::shared_ptr<const MetricFamily> batch_metrics() {
   return std::make_shared<BatchMetrics>();
 }
 
+void GlobalMinimumTally::add(const RunScore& run, const RunScore& reference) {
+  const auto *others = run.of<BatchFigures>(), *bests = reference.of<BatchFigures>();
+  if (!others || !bests) return;
+  for (std::size_t time = 0; time < others->at_times.size(); ++time) {
+    const std::optional<BatchOutcome>&other = others->at_times[time], &best = bests->at_times[time];
+    solved_ += other.has_value();
+    if (!best) continue;
+    compared_ += 1.0;
+    found_ += other && other->cost <= best->cost * (1.0 + 1e-6) + 1e-6;
+  }
+}
+
+std::vector<Metric> GlobalMinimumTally::metrics() const {
+  if (solved_ == 0.0 || compared_ == 0.0) return {};
+  return {{"global_minimum_share", "share", std::nullopt, found_ / compared_, std::nan("")}};
+}
+
 std::vector<Metric> global_minimum_share(const std::vector<const RunScore*>& scores,
                                          const std::vector<const RunScore*>& reference) {
-  double solved = 0.0, compared = 0.0, found = 0.0;
-  for (std::size_t run = 0; run < scores.size(); ++run) {
-    const auto *others = scores[run]->of<BatchFigures>(), *bests = reference[run]->of<BatchFigures>();
-    if (!others || !bests) continue;
-    for (std::size_t time = 0; time < others->at_times.size(); ++time) {
-      const std::optional<BatchOutcome>&other = others->at_times[time], &best = bests->at_times[time];
-      solved += other.has_value();
-      if (!best) continue;
-      compared += 1.0;
-      found += other && other->cost <= best->cost * (1.0 + 1e-6) + 1e-6;
-    }
-  }
-  if (solved == 0.0 || compared == 0.0) return {};
-  return {{"global_minimum_share", "share", std::nullopt, found / compared, std::nan("")}};
+  GlobalMinimumTally tally;
+  for (std::size_t run = 0; run < scores.size(); ++run) tally.add(*scores[run], *reference[run]);
+  return tally.metrics();
 }
 
 }  // namespace truebearing

@@ -21,42 +21,52 @@ constexpr std::array kBounded{
 constexpr Bounded kFrequency{"frequency_rmse", "Hz", &TargetMotionVariance::frequency_hz2};
 constexpr const char* kRange = "range_error_rmse";
 
-// Over runs, at one time. A run that does not reach the time has no step there, and NaN, as has one that is not
-// determined: neither has a bound.
-double mean_variance(const std::vector<const std::vector<TargetMotionVariance>*>& runs, std::size_t time,
-                     double TargetMotionVariance::*variance) {
-  double sum = 0.0;
-  for (const std::vector<TargetMotionVariance>* run : runs) sum += (*run)[time].*variance;
-  return sum / static_cast<double>(runs.size());
-}
-
-// True where a frequency is bounded in any run at any time.
-bool has_frequency(const std::vector<const std::vector<TargetMotionVariance>*>& runs) {
-  for (const std::vector<TargetMotionVariance>* run : runs)
-    for (const TargetMotionVariance& at : *run)
-      if (std::isfinite(at.frequency_hz2)) return true;
-  return false;
-}
-
 }  // namespace
 
-BoundSummary summarise_bound(const std::vector<const std::vector<TargetMotionVariance>*>& runs,
-                             const std::vector<double>& times_s) {
+void BoundTally::add(const std::vector<TargetMotionVariance>& run) {
+  if (sums_.empty()) {
+    sums_.resize(run.size());
+    for (TargetMotionVariance& sum : sums_) {
+      for (const Bounded& part : kBounded) sum.*part.variance = 0.0;
+      sum.*kFrequency.variance = 0.0;
+    }
+  }
+  for (std::size_t time = 0; time < run.size(); ++time) {
+    for (const Bounded& part : kBounded) sums_[time].*part.variance += run[time].*part.variance;
+    sums_[time].*kFrequency.variance += run[time].*kFrequency.variance;
+    has_frequency_ |= std::isfinite(run[time].*kFrequency.variance);
+  }
+  runs_ += 1.0;
+}
+
+// A run that does not reach the time has no step there, and NaN, as has one that is not determined: neither has a bound.
+double BoundTally::mean(std::size_t time, double TargetMotionVariance::*variance) const {
+  return time < sums_.size() ? sums_[time].*variance / runs_ : std::nan("");
+}
+
+BoundSummary BoundTally::summary(const std::vector<double>& times_s) const {
   BoundSummary summary;
   std::vector<Bounded> bounded(kBounded.begin(), kBounded.end());
-  if (has_frequency(runs)) bounded.push_back(kFrequency);
+  if (has_frequency_) bounded.push_back(kFrequency);
   double position_m2 = 0.0, velocity_m2ps2 = 0.0;
   for (std::size_t time = 0; time < times_s.size(); ++time) {
     for (const Bounded& part : bounded)
       summary.metrics.push_back(
-          {part.name, part.unit, times_s[time], std::sqrt(mean_variance(runs, time, part.variance)), std::nan("")});
-    position_m2 += mean_variance(runs, time, &TargetMotionVariance::position_m2);
-    velocity_m2ps2 += mean_variance(runs, time, &TargetMotionVariance::velocity_m2ps2);
+          {part.name, part.unit, times_s[time], std::sqrt(mean(time, part.variance)), std::nan("")});
+    position_m2 += mean(time, &TargetMotionVariance::position_m2);
+    velocity_m2ps2 += mean(time, &TargetMotionVariance::velocity_m2ps2);
   }
   const double times = static_cast<double>(times_s.size());
   summary.position_m = std::sqrt(position_m2 / times);
   summary.velocity_mps = std::sqrt(velocity_m2ps2 / times);
   return summary;
+}
+
+BoundSummary summarise_bound(const std::vector<const std::vector<TargetMotionVariance>*>& runs,
+                             const std::vector<double>& times_s) {
+  BoundTally tally;
+  for (const std::vector<TargetMotionVariance>* run : runs) tally.add(*run);
+  return tally.summary(times_s);
 }
 
 std::vector<Metric> range_efficiency(const std::vector<Metric>& tracker, const std::vector<Metric>& bound) {

@@ -16,7 +16,21 @@ struct BoundSummary {
   std::vector<Metric> metrics;
 };
 
-/// runs: [run][time].
+/// Takes the variances [time] of run by run in the order of their numbers, and keeps their sums.
+class BoundTally {
+ public:
+  void add(const std::vector<TargetMotionVariance>& run);
+  BoundSummary summary(const std::vector<double>& times_s) const;
+
+ private:
+  double mean(std::size_t time, double TargetMotionVariance::*variance) const;
+
+  std::vector<TargetMotionVariance> sums_;  // [time]
+  double runs_ = 0.0;
+  bool has_frequency_ = false;  // is one bounded in any run at any time?
+};
+
+/// The same of all runs at once: [run][time].
 BoundSummary summarise_bound(const std::vector<const std::vector<TargetMotionVariance>*>& runs,
                              const std::vector<double>& times_s);
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <numeric>
 #include <optional>
-#include <span>
 #include <utility>
 
 #include "truebearing/core/error.hpp"
@@ -16,92 +16,159 @@ namespace {
 
 using BoundAtTimes = std::vector<TargetMotionVariance>;  // [time]
 
-struct SetScores {
-  std::vector<std::vector<RunScore>> runs;  // [run][tracker]
-  std::vector<BoundAtTimes> bound;          // [run], or empty
-  std::vector<AngleVariances> angle_bound;  // the same
-  std::vector<double> time_s;               // of the first run
-  std::vector<std::string> phases;
+// What one run gives.
+struct RunOutcome {
+  std::vector<RunScore> scores;  // [tracker]
+  BoundAtTimes bound;            // where the options ask for them
+  AngleVariances angle_bound;
 };
 
-SetScores run_set(const TrackerSet& trackers, const std::vector<Scorer>& scorers,
-                  const std::vector<NamedScenario>& scenarios, std::size_t index, const ComparisonOptions& options) {
-  const Scenario& scenario = *scenarios[index].scenario;
-  SetScores set;
-  set.runs.resize(options.runs);
-  if (options.cramer_rao) set.bound.resize(options.runs);
-  if (options.angle_bound) set.angle_bound.resize(options.runs);
-  std::vector<std::optional<TrackerSet>> copies(worker_count(options.threads));
-  const auto run_one = [&](std::size_t run, std::size_t worker) {
-    if (!copies[worker]) copies[worker].emplace(trackers.fresh());
-    const Recording recording = scenario.simulate({options.seed, options.role, run});
-    set.runs[run] = score_recording(*copies[worker], scorers, recording, options.scoring);
-    if (options.cramer_rao)
-      set.bound[run] = options.cramer_rao->variances(recording, steps_at(recording, options.scoring.times_s));
-    if (options.angle_bound)
-      set.angle_bound[run] = options.angle_bound->variances(recording, options.scoring.from_step);
-    if (run != 0) return;
-    for (const Measurement& measurement : recording.measurements) set.time_s.push_back(measurement.time_s);
-    set.phases = recording.phases;
-  };
-  Progress progress;
-  if (options.progress)
-    progress = [&](std::size_t done, std::size_t) {
-      options.progress(index * options.runs + done, scenarios.size() * options.runs);
-    };
-  monte_carlo(options.runs, options.threads, run_one, progress);
-  return set;
+std::size_t index_of(const TrackerSet& trackers, const std::string& name) {
+  for (int i = 0; i < trackers.size(); ++i)
+    if (trackers.name(i) == name) return static_cast<std::size_t>(i);
+  throw InputError("scoring", "there is no tracker \"" + name + "\" in this comparison");
 }
 
-Comparison summarise_sets(const TrackerSet& trackers, const std::vector<Scorer>& scorers,
-                          std::span<const SetScores> sets, const ComparisonOptions& options) {
-  Comparison comparison;
-  comparison.seed = options.seed;
-  comparison.runs = options.runs;
-  comparison.bounds = options.bounds;
-  std::vector<std::vector<const RunScore*>> by_tracker(scorers.size());
-  std::vector<const BoundAtTimes*> bounds;
-  std::vector<const AngleVariances*> angle_bounds;
-  for (const SetScores& set : sets) {
-    for (const std::vector<RunScore>& run : set.runs)
-      for (std::size_t i = 0; i < scorers.size(); ++i) by_tracker[i].push_back(&run[i]);
-    for (const BoundAtTimes& bound : set.bound) bounds.push_back(&bound);
-    for (const AngleVariances& bound : set.angle_bound) angle_bounds.push_back(&bound);
-  }
-  const auto runs_of = [&](std::size_t i) { return TrackerRuns{options.scoring, scorers[i], by_tracker[i]}; };
-  for (std::size_t i = 0; i < scorers.size(); ++i) {
-    comparison.trackers.push_back(
-        summarise(trackers.name(static_cast<int>(i)), scorers[i], by_tracker[i], options.scoring));
-    comparison.trackers.back().metrics = metrics_of(runs_of(i));
+// The figures of runs that are added in the order of their numbers, and gone afterwards.
+class ComparisonTally {
+ public:
+  // expected: how many errors there will be of a quantity. All but the trackers must outlive it.
+  ComparisonTally(const TrackerSet& trackers, const std::vector<Scorer>& scorers, const ComparisonOptions& options,
+                  std::size_t expected)
+      : options_(options) {
+    for (std::size_t i = 0; i < scorers.size(); ++i) {
+      const std::string& name = trackers.name(static_cast<int>(i));
+      trackers_.push_back(
+          {SummaryTally(name, scorers[i], options.scoring, expected), MetricTallies(options.scoring, scorers[i]), {}});
+    }
+    if (!options.global_minimum.empty()) global_minimum_ = index_of(trackers, options.global_minimum);
+    for (const auto& [a, b] : options.pairs) {
+      const std::size_t ia = index_of(trackers, a), ib = index_of(trackers, b);
+      pairs_.push_back(
+          {ia, ib, DifferenceTally(scorers[ia], scorers[ib]), PairTallies(options.scoring, scorers[ia], scorers[ib])});
+    }
   }
 
-  const auto index_of = [&](const std::string& name) {
-    for (int i = 0; i < trackers.size(); ++i)
-      if (trackers.name(i) == name) return static_cast<std::size_t>(i);
-    throw InputError("scoring", "there is no tracker \"" + name + "\" in this comparison");
+  void add(const RunOutcome& run) {
+    for (std::size_t i = 0; i < trackers_.size(); ++i) {
+      trackers_[i].summary.add(run.scores[i]);
+      trackers_[i].metrics.add(run.scores[i]);
+      if (global_minimum_ && *global_minimum_ != i)
+        trackers_[i].global_minimum.add(run.scores[i], run.scores[*global_minimum_]);
+    }
+    for (Pair& pair : pairs_) {
+      pair.rmse.add(run.scores[pair.a], run.scores[pair.b]);
+      pair.metrics.add(run.scores[pair.a], run.scores[pair.b]);
+    }
+    if (options_.cramer_rao) bound_.add(run.bound);
+    if (options_.angle_bound) angle_bound_.add(run.angle_bound);
+  }
+
+  Comparison comparison() const {
+    Comparison comparison;
+    comparison.seed = options_.seed;
+    comparison.runs = options_.runs;
+    comparison.bounds = options_.bounds;
+    if (options_.angle_bound) comparison.angle_bounds = angle_bound_.summaries();
+    if (options_.cramer_rao) comparison.cramer_rao = bound_.summary(options_.scoring.times_s);
+    for (const OfTracker& tracker : trackers_) {
+      TrackerSummary& summary = comparison.trackers.emplace_back(tracker.summary.summary());
+      const auto add_metrics = [&](const std::vector<Metric>& metrics) {
+        summary.metrics.insert(summary.metrics.end(), metrics.begin(), metrics.end());
+      };
+      add_metrics(tracker.metrics.metrics());
+      if (options_.cramer_rao) add_metrics(range_efficiency(summary.metrics, comparison.cramer_rao->metrics));
+      add_metrics(tracker.global_minimum.metrics());
+    }
+    for (std::size_t i = 0; i < pairs_.size(); ++i) {
+      const auto& [a, b] = options_.pairs[i];
+      Comparison::Pair& pair = comparison.pairs.emplace_back(Comparison::Pair{a, b, pairs_[i].rmse.differences()});
+      for (PairedDifference& difference : pairs_[i].metrics.differences())
+        pair.differences.push_back(std::move(difference));
+    }
+    return comparison;
+  }
+
+ private:
+  struct OfTracker {
+    SummaryTally summary;
+    MetricTallies metrics;
+    GlobalMinimumTally global_minimum;
   };
-  const auto add_metrics = [](TrackerSummary& summary, const std::vector<Metric>& metrics) {
-    summary.metrics.insert(summary.metrics.end(), metrics.begin(), metrics.end());
+  struct Pair {
+    std::size_t a, b;
+    DifferenceTally rmse;
+    PairTallies metrics;
   };
-  if (options.angle_bound) comparison.angle_bounds = summarise_angle_bounds(angle_bounds);
-  if (options.cramer_rao) {
-    comparison.cramer_rao = summarise_bound(bounds, options.scoring.times_s);
-    for (TrackerSummary& summary : comparison.trackers)
-      add_metrics(summary, range_efficiency(summary.metrics, comparison.cramer_rao->metrics));
+  const ComparisonOptions& options_;
+  std::vector<OfTracker> trackers_;
+  std::optional<std::size_t> global_minimum_;
+  std::vector<Pair> pairs_;
+  BoundTally bound_;
+  AngleBoundTally angle_bound_;
+};
+
+// Runs the trackers on the runs of one scenario, some at a time, and gives each run to `take` in the order of their
+// numbers: no more than those few are ever there.
+class SetOfRuns {
+ public:
+  SetOfRuns(const TrackerSet& trackers, const std::vector<Scorer>& scorers, const Scenario& scenario,
+            const ComparisonOptions& options)
+      : trackers_(trackers),
+        scorers_(scorers),
+        scenario_(scenario),
+        options_(options),
+        copies_(worker_count(options.threads)) {}
+
+  // progress: of the runs of this set.
+  template <typename Take>
+  void run(const Progress& progress, const Take& take) {
+    const std::size_t at_a_time = 16 * copies_.size();
+    for (std::size_t first = 0; first < options_.runs; first += at_a_time) {
+      std::vector<RunOutcome> outcomes(std::min(at_a_time, options_.runs - first));
+      Progress of_all;
+      if (progress) of_all = [&](std::size_t done, std::size_t) { progress(first + done, options_.runs); };
+      monte_carlo(
+          outcomes.size(), options_.threads,
+          [&](std::size_t run, std::size_t worker) { outcomes[run] = outcome(first + run, worker); }, of_all);
+      for (const RunOutcome& outcome : outcomes) take(outcome);
+    }
   }
-  if (!options.global_minimum.empty()) {
-    const std::size_t best = index_of(options.global_minimum);
-    for (std::size_t i = 0; i < scorers.size(); ++i)
-      if (i != best) add_metrics(comparison.trackers[i], global_minimum_share(by_tracker[i], by_tracker[best]));
+
+  // Of the first run.
+  const std::vector<double>& time_s() const { return time_s_; }
+  const std::vector<std::string>& phases() const { return phases_; }
+
+ private:
+  RunOutcome outcome(std::size_t run, std::size_t worker) {
+    std::optional<TrackerSet>& copy = copies_[worker];
+    if (!copy) copy.emplace(trackers_.fresh());
+    const Recording recording = scenario_.simulate({options_.seed, options_.role, run});
+    RunOutcome outcome;
+    outcome.scores = score_recording(*copy, scorers_, recording, options_.scoring);
+    if (options_.cramer_rao)
+      outcome.bound = options_.cramer_rao->variances(recording, steps_at(recording, options_.scoring.times_s));
+    if (options_.angle_bound)
+      outcome.angle_bound = options_.angle_bound->variances(recording, options_.scoring.from_step);
+    if (run != 0) return outcome;
+    for (const Measurement& measurement : recording.measurements) time_s_.push_back(measurement.time_s);
+    phases_ = recording.phases;
+    return outcome;
   }
-  for (const auto& [a, b] : options.pairs) {
-    const std::size_t ia = index_of(a), ib = index_of(b);
-    Comparison::Pair& pair = comparison.pairs.emplace_back(
-        Comparison::Pair{a, b, paired_difference(scorers[ia], by_tracker[ia], scorers[ib], by_tracker[ib])});
-    for (PairedDifference& difference : paired_differences(runs_of(ia), runs_of(ib)))
-      pair.differences.push_back(std::move(difference));
-  }
-  return comparison;
+
+  const TrackerSet& trackers_;
+  const std::vector<Scorer>& scorers_;
+  const Scenario& scenario_;
+  const ComparisonOptions& options_;
+  std::vector<std::optional<TrackerSet>> copies_;  // [worker]
+  std::vector<double> time_s_;
+  std::vector<std::string> phases_;
+};
+
+// Of a quantity, over all steps of as many runs as this one.
+std::size_t errors_in(const Scenario& scenario, const ComparisonOptions& options) {
+  const Recording recording = scenario.simulate({options.seed, options.role, 0});
+  return options.runs * recording.measurements.size() * recording.truth.size();
 }
 
 }  // namespace
@@ -118,19 +185,35 @@ Comparison compare(const TrackerSet& trackers, const std::vector<NamedScenario>&
   for (int i = 0; i < trackers.size(); ++i)
     scorers.emplace_back(scenarios.front().scenario->truth_space(), trackers.space(i));
 
-  std::vector<SetScores> sets;
-  for (std::size_t i = 0; i < scenarios.size(); ++i) sets.push_back(run_set(trackers, scorers, scenarios, i, options));
-
-  Comparison comparison = summarise_sets(trackers, scorers, sets, options);
-  comparison.time_s = sets.front().time_s;
-  comparison.phases = sets.front().phases;
-  if (sets.size() < 2) return comparison;
-  for (std::size_t i = 0; i < sets.size(); ++i) {
-    Comparison of_set = summarise_sets(trackers, scorers, {&sets[i], 1}, options);
-    of_set.time_s = sets[i].time_s;
-    of_set.phases = sets[i].phases;
-    comparison.sets.push_back({scenarios[i].name, std::move(of_set)});
+  std::vector<std::size_t> expected;
+  for (const NamedScenario& named : scenarios) expected.push_back(errors_in(*named.scenario, options));
+  ComparisonTally all(trackers, scorers, options, std::accumulate(expected.begin(), expected.end(), std::size_t{0}));
+  std::vector<ComparisonOfSet> sets;
+  std::vector<double> time_s;
+  std::vector<std::string> phases;
+  for (std::size_t i = 0; i < scenarios.size(); ++i) {
+    SetOfRuns set(trackers, scorers, *scenarios[i].scenario, options);
+    Progress progress;
+    if (options.progress)
+      progress = [&](std::size_t done, std::size_t) {
+        options.progress(i * options.runs + done, scenarios.size() * options.runs);
+      };
+    ComparisonTally alone(trackers, scorers, options, expected[i]);
+    set.run(progress, [&](const RunOutcome& run) {
+      all.add(run);
+      if (scenarios.size() > 1) alone.add(run);
+    });
+    if (i == 0) time_s = set.time_s();
+    if (i == 0) phases = set.phases();
+    if (scenarios.size() < 2) continue;
+    sets.push_back({scenarios[i].name, alone.comparison()});
+    sets.back().comparison.time_s = set.time_s();
+    sets.back().comparison.phases = set.phases();
   }
+  Comparison comparison = all.comparison();
+  comparison.time_s = std::move(time_s);
+  comparison.phases = std::move(phases);
+  comparison.sets = std::move(sets);
   return comparison;
 }
 

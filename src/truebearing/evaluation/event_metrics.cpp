@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "truebearing/evaluation/run_score.hpp"
-#include "truebearing/evaluation/statistics.hpp"
+#include "truebearing/evaluation/samples.hpp"
 
 namespace truebearing {
 namespace {
@@ -27,44 +27,56 @@ class EventRun final : public EventFigures {
   void end(std::span<const TrackEvent> reported) override { events.assign(reported.begin(), reported.end()); }
 };
 
+class EventTally final : public MetricTally {
+ public:
+  explicit EventTally(const Scorer& scorer) : has_source_(scorer.truth().component_index("frequency_hz") >= 0) {}
+
+  void add(const RunScore& score) override {
+    const auto* run = score.of<EventFigures>();
+    if (!run) return;
+    any_ |= !run->events.empty();
+    jumped_.add(reports(*run, Kind::source_changed, kEver));
+    if (!run->turns_at_s) return;
+    const double turn_s = *run->turns_at_s;
+    falsely_.add(reports(*run, Kind::turn_began, turn_s));
+    if (!std::isfinite(turn_s)) return;
+    double first_s = kEver;
+    for (const TrackEvent& event : run->events)
+      if (event.kind == Kind::turn_began && event.time_s >= turn_s) first_s = std::min(first_s, event.time_s);
+    found_.add(std::isfinite(first_s));
+    if (std::isfinite(first_s)) delay_s_.add(first_s - turn_s);
+  }
+
+  std::vector<Metric> metrics() const override {
+    std::vector<Metric> metrics;
+    if (!any_) return metrics;
+    const auto add = [&](const char* name, const char* unit, Estimate figure) {
+      metrics.push_back({name, unit, std::nullopt, figure.value, figure.se});
+    };
+    if (has_source_) add("source_change_share", "share", jumped_.share());
+    if (!found_.empty()) {
+      add("turn_delay", "s", delay_s_.mean());
+      add("turn_found_share", "share", found_.share());
+    }
+    if (!falsely_.empty()) add("false_turn_share", "share", falsely_.share());
+    return metrics;
+  }
+
+ private:
+  bool has_source_;
+  bool any_ = false;
+  Share jumped_, found_, falsely_;
+  Samples delay_s_;
+};
+
 class EventMetrics final : public MetricFamily {
  public:
   std::unique_ptr<RunFigures> begin(const RunStart& run) const override {
     return std::make_unique<EventRun>(run.recording.truth);
   }
 
-  std::vector<Metric> finish(const TrackerRuns& tracker) const override {
-    std::vector<const EventFigures*> runs;
-    for (const RunScore* score : tracker.scores)
-      if (const auto* run = score->of<EventFigures>()) runs.push_back(run);
-    if (std::none_of(runs.begin(), runs.end(), [](const EventFigures* run) { return !run->events.empty(); })) return {};
-
-    std::vector<double> jumped, found, falsely, delay_s;
-    for (const EventFigures* run : runs) {
-      jumped.push_back(reports(*run, Kind::source_changed, kEver));
-      if (!run->turns_at_s) continue;
-      const double turn_s = *run->turns_at_s;
-      falsely.push_back(reports(*run, Kind::turn_began, turn_s));
-      if (!std::isfinite(turn_s)) continue;
-      double first_s = kEver;
-      for (const TrackEvent& event : run->events)
-        if (event.kind == Kind::turn_began && event.time_s >= turn_s) first_s = std::min(first_s, event.time_s);
-      found.push_back(std::isfinite(first_s));
-      if (std::isfinite(first_s)) delay_s.push_back(first_s - turn_s);
-    }
-
-    std::vector<Metric> metrics;
-    const auto add = [&](const char* name, const char* unit, Estimate figure) {
-      metrics.push_back({name, unit, std::nullopt, figure.value, figure.se});
-    };
-    if (tracker.scorer.truth().component_index("frequency_hz") >= 0)
-      add("source_change_share", "share", share_of(jumped));
-    if (!found.empty()) {
-      add("turn_delay", "s", mean_of(delay_s));
-      add("turn_found_share", "share", share_of(found));
-    }
-    if (!falsely.empty()) add("false_turn_share", "share", share_of(falsely));
-    return metrics;
+  std::unique_ptr<MetricTally> tally(const ScoringRule&, const Scorer& scorer) const override {
+    return std::make_unique<EventTally>(scorer);
   }
 };
 

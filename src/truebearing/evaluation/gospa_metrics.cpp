@@ -1,10 +1,10 @@
 #include "truebearing/evaluation/gospa_metrics.hpp"
 
-#include <algorithm>
+#include <string>
 
 #include "truebearing/evaluation/metric_registry.hpp"
 #include "truebearing/evaluation/run_score.hpp"
-#include "truebearing/evaluation/statistics.hpp"
+#include "truebearing/evaluation/samples.hpp"
 
 namespace truebearing {
 namespace {
@@ -26,6 +26,42 @@ class GospaRun final : public GospaFigures {
   double cutoff_;
 };
 
+class GospaTally final : public MetricTally {
+ public:
+  explicit GospaTally(const ScoringRule& rule) {
+    if (rule.assignment) unit_ = unit_of(rule.assignment->quantity);
+    all_have_ = rule.assignment.has_value();
+  }
+
+  void add(const RunScore& run) override {
+    const auto* figures = run.of<GospaFigures>();
+    all_have_ = all_have_ && figures;
+    if (!figures) return;
+    squared_.add({figures->squared, figures->steps});
+    localisation_.add({figures->localisation, figures->steps});
+    missed_.add({figures->missed, figures->steps});
+    false_tracks_.add({figures->false_tracks, figures->steps});
+  }
+
+  std::vector<Metric> metrics() const override {
+    std::vector<Metric> metrics;
+    if (!all_have_) return metrics;
+    const auto add = [&](const char* name, const std::string& unit, Estimate figure) {
+      metrics.push_back({name, unit, std::nullopt, figure.value, figure.se, MetricTable::tracks});
+    };
+    add("gospa", unit_, squared_.rmse());
+    add("gospa_localisation", unit_, localisation_.rmse());
+    add("missed_targets", "1", missed_.mse());
+    add("false_tracks", "1", false_tracks_.mse());
+    return metrics;
+  }
+
+ private:
+  std::string unit_;
+  bool all_have_ = false;  // of the runs so far
+  RunErrors squared_, localisation_, missed_, false_tracks_;
+};
+
 class GospaMetrics final : public MetricFamily {
  public:
   std::unique_ptr<RunFigures> begin(const RunStart& run) const override {
@@ -33,27 +69,8 @@ class GospaMetrics final : public MetricFamily {
     return std::make_unique<GospaRun>(run.rule.assignment->cutoff);
   }
 
-  std::vector<Metric> finish(const TrackerRuns& runs) const override {
-    const auto has_none = [](const RunScore* run) { return !run->of<GospaFigures>(); };
-    if (!runs.rule.assignment || std::any_of(runs.scores.begin(), runs.scores.end(), has_none)) return {};
-    const auto over_runs = [&](double GospaFigures::*part) {
-      std::vector<SquaredErrors> sums;
-      for (const RunScore* run : runs.scores) {
-        const auto& figures = *run->of<GospaFigures>();
-        sums.push_back({figures.*part, figures.steps});
-      }
-      return sums;
-    };
-    std::vector<Metric> metrics;
-    const auto add = [&](const char* name, const std::string& unit, Estimate figure) {
-      metrics.push_back({name, unit, std::nullopt, figure.value, figure.se, MetricTable::tracks});
-    };
-    const std::string unit = unit_of(runs.rule.assignment->quantity);
-    add("gospa", unit, pooled_rmse(over_runs(&GospaFigures::squared)));
-    add("gospa_localisation", unit, pooled_rmse(over_runs(&GospaFigures::localisation)));
-    add("missed_targets", "1", pooled_mse(over_runs(&GospaFigures::missed)));
-    add("false_tracks", "1", pooled_mse(over_runs(&GospaFigures::false_tracks)));
-    return metrics;
+  std::unique_ptr<MetricTally> tally(const ScoringRule& rule, const Scorer&) const override {
+    return std::make_unique<GospaTally>(rule);
   }
 };
 

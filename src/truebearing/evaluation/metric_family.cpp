@@ -2,15 +2,25 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "truebearing/evaluation/run_score.hpp"
 
 namespace truebearing {
 
-std::vector<Metric> metrics_of(const TrackerRuns& runs) {
+MetricTallies::MetricTallies(const ScoringRule& rule, const Scorer& scorer) {
+  for (const std::shared_ptr<const MetricFamily>& family : rule.families)
+    tallies_.push_back(family->tally(rule, scorer));
+}
+
+void MetricTallies::add(const RunScore& run) {
+  for (const std::unique_ptr<MetricTally>& tally : tallies_) tally->add(run);
+}
+
+std::vector<Metric> MetricTallies::metrics() const {
   std::vector<Metric> metrics;
-  for (const std::shared_ptr<const MetricFamily>& family : runs.rule.families)
-    for (Metric& metric : family->finish(runs)) metrics.push_back(std::move(metric));
+  for (const std::unique_ptr<MetricTally>& tally : tallies_)
+    for (Metric& metric : tally->metrics()) metrics.push_back(std::move(metric));
   const auto place = [](const Metric& metric) {
     return metric.time_s.value_or(std::numeric_limits<double>::infinity());
   };
@@ -19,10 +29,19 @@ std::vector<Metric> metrics_of(const TrackerRuns& runs) {
   return metrics;
 }
 
-std::vector<PairedDifference> paired_differences(const TrackerRuns& a, const TrackerRuns& b) {
+PairTallies::PairTallies(const ScoringRule& rule, const Scorer& a, const Scorer& b) {
+  for (const std::shared_ptr<const MetricFamily>& family : rule.families)
+    if (auto tally = family->pair_tally(rule, a, b)) tallies_.push_back(std::move(tally));
+}
+
+void PairTallies::add(const RunScore& a, const RunScore& b) {
+  for (const std::unique_ptr<PairTally>& tally : tallies_) tally->add(a, b);
+}
+
+std::vector<PairedDifference> PairTallies::differences() const {
   std::vector<PairedDifference> differences;
-  for (const std::shared_ptr<const MetricFamily>& family : a.rule.families)
-    for (PairedDifference& difference : family->paired(a, b)) differences.push_back(std::move(difference));
+  for (const std::unique_ptr<PairTally>& tally : tallies_)
+    for (PairedDifference& difference : tally->differences()) differences.push_back(std::move(difference));
   return differences;
 }
 

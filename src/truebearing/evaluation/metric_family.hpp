@@ -1,6 +1,6 @@
 // MetricFamily: figures that belong together, over the runs of one tracker. What it needs of a run beside its RunScore
-// it gathers step by step, run by run; the figures are made of all runs in the order of their numbers, so that the
-// order in which runs were computed cannot matter. A new one is a file of its own and a line in metric_registry.cpp.
+// it gathers step by step, run by run; a tally takes the runs in the order of their numbers, so that the order in which
+// they were computed cannot matter, and keeps no more of them than its figures need. A new one is a file of its own and a line in metric_registry.cpp.
 #pragma once
 
 #include <memory>
@@ -42,32 +42,60 @@ class RunFigures {
   virtual void end(std::span<const TrackEvent>) {}
 };
 
-/// The runs of one tracker, in the order of their numbers.
-struct TrackerRuns {
-  const ScoringRule& rule;
-  const Scorer& scorer;
-  const std::vector<const RunScore*>& scores;
+/// What a family makes of the runs of one tracker: they are added in the order of their numbers, and gone afterwards.
+class MetricTally {
+ public:
+  virtual ~MetricTally() = default;
+  virtual void add(const RunScore& run) = 0;
+  /// The figures: name, unit and, of those at the rule's times, time. Empty where the tracker has none.
+  virtual std::vector<Metric> metrics() const = 0;
+};
+
+/// The same of two trackers a and b over the same runs: a - b, for what both have.
+class PairTally {
+ public:
+  virtual ~PairTally() = default;
+  virtual void add(const RunScore& a, const RunScore& b) = 0;
+  virtual std::vector<PairedDifference> differences() const = 0;
 };
 
 class MetricFamily {
  public:
   virtual ~MetricFamily() = default;
 
-  /// To be filled over a run; nullptr where RunScore has all that finish() needs. Throws InputError where the recording
+  /// To be filled over a run; nullptr where RunScore has all that a tally needs. Throws InputError where the recording
   /// cannot be scored so.
   virtual std::unique_ptr<RunFigures> begin(const RunStart&) const { return nullptr; }
-  /// The figures: name, unit and, of those at the rule's times, time. Empty where the tracker has none.
-  virtual std::vector<Metric> finish(const TrackerRuns& runs) const = 0;
-  /// a - b, for what both have.
-  virtual std::vector<PairedDifference> paired(const TrackerRuns& /*a*/, const TrackerRuns& /*b*/) const { return {}; }
+  /// Of a tracker with that scorer; both must outlive it.
+  virtual std::unique_ptr<MetricTally> tally(const ScoringRule& rule, const Scorer& scorer) const = 0;
+  /// nullptr where the family compares nothing.
+  virtual std::unique_ptr<PairTally> pair_tally(const ScoringRule&, const Scorer& /*a*/, const Scorer& /*b*/) const {
+    return nullptr;
+  }
 };
 
 /// Families that have something to say of any study: figures at its times, of batch estimators, of events.
 std::vector<std::shared_ptr<const MetricFamily>> usual_metrics();
 
-/// The figures of all families of the rule: those at times first, in the order of the times.
-std::vector<Metric> metrics_of(const TrackerRuns& runs);
-/// a - b of all families of the rule.
-std::vector<PairedDifference> paired_differences(const TrackerRuns& a, const TrackerRuns& b);
+/// All families of a rule. Figures at times come first, in the order of the times.
+class MetricTallies final : public MetricTally {
+ public:
+  MetricTallies(const ScoringRule& rule, const Scorer& scorer);
+  void add(const RunScore& run) override;
+  std::vector<Metric> metrics() const override;
+
+ private:
+  std::vector<std::unique_ptr<MetricTally>> tallies_;
+};
+
+class PairTallies final : public PairTally {
+ public:
+  PairTallies(const ScoringRule& rule, const Scorer& a, const Scorer& b);
+  void add(const RunScore& a, const RunScore& b) override;
+  std::vector<PairedDifference> differences() const override;
+
+ private:
+  std::vector<std::unique_ptr<PairTally>> tallies_;
+};
 
 }  // namespace truebearing

@@ -73,10 +73,13 @@ Estimate mean_of(const std::vector<double>& values) {
 }
 
 Estimate share_of(const std::vector<double>& values) {
-  const double n = static_cast<double>(values.size());
-  if (values.empty()) return {kNaN, kNaN};
-  const double p = std::accumulate(values.begin(), values.end(), 0.0) / n;
-  return {p, std::sqrt(p * (1.0 - p) / n)};
+  return share_of(std::accumulate(values.begin(), values.end(), 0.0), static_cast<double>(values.size()));
+}
+
+Estimate share_of(double ones, double count) {
+  if (count == 0.0) return {kNaN, kNaN};
+  const double p = ones / count;
+  return {p, std::sqrt(p * (1.0 - p) / count)};
 }
 
 Estimate standard_deviation_of(const std::vector<double>& values) {

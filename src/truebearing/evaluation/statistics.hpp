@@ -42,6 +42,7 @@ Estimate pooled_mse(const std::vector<SquaredErrors>& runs);
 Estimate mean_of(const std::vector<double>& values);
 /// Mean of values that are 0 or 1, with the standard error of a binomial.
 Estimate share_of(const std::vector<double>& values);
+Estimate share_of(double ones, double count);
 /// Of independent values, the standard deviation, about the mean, over n - 1; its standard error is the jackknife.
 Estimate standard_deviation_of(const std::vector<double>& values);
 /// The middle; of an even number the mean of the two in the middle.

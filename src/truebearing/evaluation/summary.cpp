@@ -4,59 +4,13 @@
 #include <cmath>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "truebearing/core/chi_square.hpp"
 #include "truebearing/core/constants.hpp"
 
 namespace truebearing {
 namespace {
-
-std::vector<QuantitySummary::Phase> summarise_phases(std::size_t q, const std::vector<const RunScore*>& scores) {
-  const int count = phase_count(scores);
-  std::vector<QuantitySummary::Phase> phases;
-  for (int phase = 0; phase < count; ++phase) {
-    std::vector<SquaredErrors> runs;
-    for (const RunScore* score : scores) runs.push_back(squared_errors_in(*score, q, phase));
-    const Estimate rmse = pooled_rmse(runs);
-    phases.push_back({rmse.value, rmse.se});
-  }
-  return phases;
-}
-
-QuantitySummary summarise_quantity(const std::string& name, std::size_t q, int dimension,
-                                   const std::vector<const RunScore*>& scores) {
-  QuantitySummary summary;
-  summary.name = name;
-  std::vector<SquaredErrors> runs;
-  std::vector<double> all;
-  std::vector<SquaredErrors> steps;
-  for (const RunScore* score : scores) {
-    const std::vector<double>& errors = score->error[q];
-    runs.push_back(squared_errors(*score, q));
-    steps.resize(std::max(steps.size(), score->steps()));
-    for (std::size_t place = 0; place < errors.size(); ++place) {
-      if (std::isnan(errors[place])) continue;
-      all.push_back(errors[place]);
-      steps[place % score->steps()].add(errors[place]);
-    }
-  }
-  const Estimate rmse = pooled_rmse(runs);
-  summary.rmse = rmse.value;
-  summary.rmse_se = rmse.se;
-  summary.median = median_of(std::move(all));
-  for (const SquaredErrors& step : steps) summary.series.push_back(root_mean(step));
-  summary.phases = summarise_phases(q, scores);
-  const double quantile = chi_square_quantile(0.95, dimension);
-  double covered = 0.0, count = 0.0;
-  for (const RunScore* score : scores)
-    for (const double nees : score->quantity_nees[q]) {
-      if (std::isnan(nees)) continue;
-      covered += nees <= quantile ? 1.0 : 0.0;
-      count += 1.0;
-    }
-  summary.coverage95 = count > 0.0 ? covered / count : kNaN;
-  return summary;
-}
 
 // Is the last error of any target beyond its threshold?
 bool is_lost(const RunScore& score, const Scorer& scorer, const ScoringRule& rule) {
@@ -102,57 +56,119 @@ const QuantitySummary* TrackerSummary::quantity(const std::string& quantity_name
   return nullptr;
 }
 
-TrackerSummary summarise(const std::string& name, const Scorer& scorer, const std::vector<const RunScore*>& scores,
-                         const ScoringRule& rule) {
-  TrackerSummary summary;
-  summary.name = name;
-  summary.dimension = scorer.dimension();
-  for (std::size_t q = 0; q < scorer.quantities().size(); ++q)
-    summary.quantities.push_back(summarise_quantity(scorer.quantities()[q], q, scorer.dimension(q), scores));
-
-  const double quantile = chi_square_quantile(0.95, scorer.dimension());
-  double nees_sum = 0.0, covered = 0.0, count = 0.0, gate_sum = 0.0, limited = 0.0, lost = 0.0;
-  for (const RunScore* score : scores) {
-    for (const double nees : score->nees) {
-      if (std::isnan(nees)) continue;
-      nees_sum += nees;
-      covered += nees <= quantile ? 1.0 : 0.0;
-      count += 1.0;
-    }
-    if (!score->error.empty())
-      summary.scored_steps +=
-          std::count_if(score->error[0].begin(), score->error[0].end(), [](double e) { return !std::isnan(e); });
-    summary.corrected_steps += score->corrected;
-    gate_sum += score->gate_sum;
-    limited += score->gate_limited;
-    lost += is_lost(*score, scorer, rule) ? 1.0 : 0.0;
+void SummaryTally::QuantityTally::add(const RunScore& run, std::size_t quantity, double quantile) {
+  const std::vector<double>& errors = run.error[quantity];
+  runs.add(squared_errors(run, quantity));
+  steps.resize(std::max(steps.size(), run.steps()));
+  for (std::size_t place = 0; place < errors.size(); ++place) {
+    if (std::isnan(errors[place])) continue;
+    median.add(errors[place]);
+    steps[place % run.steps()].add(errors[place]);
   }
-  summary.nees = count > 0.0 ? nees_sum / count : kNaN;
-  summary.coverage95 = count > 0.0 ? covered / count : kNaN;
-  summary.loss_rate = scores.empty() ? kNaN : lost / static_cast<double>(scores.size());
-  if (summary.corrected_steps > 0) {
-    summary.limited_share = limited / static_cast<double>(summary.corrected_steps);
-    summary.mean_gate = gate_sum / static_cast<double>(summary.corrected_steps);
+  phases.resize(std::max(phases.size(), static_cast<std::size_t>(phase_count({&run}))));
+  for (std::size_t phase = 0; phase < phases.size(); ++phase)
+    phases[phase].add(squared_errors_in(run, quantity, static_cast<int>(phase)));
+  for (const double nees : run.quantity_nees[quantity]) {
+    if (std::isnan(nees)) continue;
+    covered += nees <= quantile ? 1.0 : 0.0;
+    count += 1.0;
+  }
+}
+
+SummaryTally::SummaryTally(std::string name, const Scorer& scorer, const ScoringRule& rule, std::size_t expected)
+    : name_(std::move(name)),
+      scorer_(scorer),
+      rule_(rule),
+      quantities_(scorer.quantities().size(), QuantityTally(expected > kMostValuesApart ? 0 : kMostValuesApart)),
+      quantile_(chi_square_quantile(0.95, scorer.dimension())) {}
+
+void SummaryTally::add_consistency(const RunScore& run) {
+  for (const double nees : run.nees) {
+    if (std::isnan(nees)) continue;
+    nees_sum_ += nees;
+    covered_ += nees <= quantile_ ? 1.0 : 0.0;
+    count_ += 1.0;
+  }
+}
+
+void SummaryTally::add(const RunScore& run) {
+  for (std::size_t q = 0; q < quantities_.size(); ++q)
+    quantities_[q].add(run, q, chi_square_quantile(0.95, scorer_.dimension(q)));
+  add_consistency(run);
+  if (!run.error.empty())
+    scored_steps_ += std::count_if(run.error[0].begin(), run.error[0].end(), [](double e) { return !std::isnan(e); });
+  corrected_steps_ += run.corrected;
+  gate_sum_ += run.gate_sum;
+  limited_ += run.gate_limited;
+  lost_ += is_lost(run, scorer_, rule_) ? 1.0 : 0.0;
+  runs_ += 1.0;
+}
+
+TrackerSummary SummaryTally::summary() const {
+  TrackerSummary summary;
+  summary.name = name_;
+  summary.dimension = scorer_.dimension();
+  for (std::size_t q = 0; q < quantities_.size(); ++q) {
+    const QuantityTally& tally = quantities_[q];
+    QuantitySummary& quantity = summary.quantities.emplace_back();
+    quantity.name = scorer_.quantities()[q];
+    const Estimate rmse = tally.runs.rmse();
+    quantity.rmse = rmse.value;
+    quantity.rmse_se = rmse.se;
+    quantity.median = tally.median.value();
+    quantity.coverage95 = tally.count > 0.0 ? tally.covered / tally.count : kNaN;
+    for (const SquaredErrors& step : tally.steps) quantity.series.push_back(root_mean(step));
+    for (const RunErrors& phase : tally.phases) {
+      const Estimate of_phase = phase.rmse();
+      quantity.phases.push_back({of_phase.value, of_phase.se});
+    }
+  }
+  summary.nees = count_ > 0.0 ? nees_sum_ / count_ : kNaN;
+  summary.coverage95 = count_ > 0.0 ? covered_ / count_ : kNaN;
+  summary.loss_rate = runs_ > 0.0 ? lost_ / runs_ : kNaN;
+  summary.scored_steps = scored_steps_;
+  summary.corrected_steps = corrected_steps_;
+  if (corrected_steps_ > 0) {
+    summary.limited_share = limited_ / static_cast<double>(corrected_steps_);
+    summary.mean_gate = gate_sum_ / static_cast<double>(corrected_steps_);
   }
   return summary;
 }
 
+DifferenceTally::DifferenceTally(const Scorer& a, const Scorer& b) {
+  for (std::size_t qa = 0; qa < a.quantities().size(); ++qa)
+    if (const std::optional<std::size_t> qb = b.quantity(a.quantities()[qa]))
+      quantities_.push_back({a.quantities()[qa], qa, *qb, {}});
+}
+
+void DifferenceTally::add(const RunScore& a, const RunScore& b) {
+  for (Compared& compared : quantities_) {
+    const double value = root_mean(squared_errors(a, compared.in_a)) - root_mean(squared_errors(b, compared.in_b));
+    if (!std::isnan(value)) compared.differences.add(value);
+  }
+}
+
+std::vector<PairedDifference> DifferenceTally::differences() const {
+  std::vector<PairedDifference> differences;
+  for (const Compared& compared : quantities_) {
+    const Estimate mean = compared.differences.mean();
+    differences.push_back({compared.name, mean.value, mean.se, title_of(compared.name)});
+  }
+  return differences;
+}
+
+TrackerSummary summarise(const std::string& name, const Scorer& scorer, const std::vector<const RunScore*>& scores,
+                         const ScoringRule& rule) {
+  SummaryTally tally(name, scorer, rule);
+  for (const RunScore* score : scores) tally.add(*score);
+  return tally.summary();
+}
+
 std::vector<PairedDifference> paired_difference(const Scorer& scorer_a, const std::vector<const RunScore*>& a,
                                                 const Scorer& scorer_b, const std::vector<const RunScore*>& b) {
-  std::vector<PairedDifference> differences;
-  for (std::size_t qa = 0; qa < scorer_a.quantities().size(); ++qa)
-    for (std::size_t qb = 0; qb < scorer_b.quantities().size(); ++qb) {
-      if (scorer_a.quantities()[qa] != scorer_b.quantities()[qb]) continue;
-      std::vector<double> values;
-      for (std::size_t run = 0; run < a.size(); ++run) {
-        const double value = root_mean(squared_errors(*a[run], qa)) - root_mean(squared_errors(*b[run], qb));
-        if (!std::isnan(value)) values.push_back(value);
-      }
-      const Estimate mean = mean_of(values);
-      const std::string& quantity = scorer_a.quantities()[qa];
-      differences.push_back({quantity, mean.value, mean.se, title_of(quantity)});
-    }
-  return differences;
+  DifferenceTally tally(scorer_a, scorer_b);
+  for (std::size_t run = 0; run < a.size(); ++run) tally.add(*a[run], *b[run]);
+  return tally.differences();
 }
 
 }  // namespace truebearing

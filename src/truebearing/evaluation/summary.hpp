@@ -7,7 +7,7 @@
 
 #include "truebearing/evaluation/metric.hpp"
 #include "truebearing/evaluation/run_score.hpp"
-#include "truebearing/evaluation/statistics.hpp"
+#include "truebearing/evaluation/samples.hpp"
 
 namespace truebearing {
 
@@ -41,7 +41,56 @@ struct TrackerSummary {
   const QuantitySummary* quantity(const std::string& quantity_name) const;
 };
 
-/// scores: [run], of one tracker.
+/// The runs of one tracker, added in the order of their numbers, and gone afterwards.
+class SummaryTally {
+ public:
+  /// The scorer and the rule must outlive it. expected: how many errors there will be of a quantity, over all runs and
+  /// steps (samples.hpp).
+  SummaryTally(std::string name, const Scorer& scorer, const ScoringRule& rule, std::size_t expected = 0);
+  void add(const RunScore& run);
+  TrackerSummary summary() const;
+
+ private:
+  struct QuantityTally {
+    explicit QuantityTally(std::size_t kept_apart) : median(kept_apart) {}
+    void add(const RunScore& run, std::size_t quantity, double quantile);
+
+    RunErrors runs;
+    MedianOf median;
+    std::vector<SquaredErrors> steps;
+    std::vector<RunErrors> phases;
+    double covered = 0.0;
+    double count = 0.0;
+  };
+  void add_consistency(const RunScore& run);
+
+  std::string name_;
+  const Scorer& scorer_;
+  const ScoringRule& rule_;
+  std::vector<QuantityTally> quantities_;
+  double quantile_;
+  double nees_sum_ = 0.0, covered_ = 0.0, count_ = 0.0, gate_sum_ = 0.0, limited_ = 0.0, lost_ = 0.0, runs_ = 0.0;
+  long scored_steps_ = 0;
+  long corrected_steps_ = 0;
+};
+
+/// a - b of the RMSE of two trackers over the same runs, for the quantities that both have; runs as above.
+class DifferenceTally {
+ public:
+  DifferenceTally(const Scorer& a, const Scorer& b);
+  void add(const RunScore& a, const RunScore& b);
+  std::vector<PairedDifference> differences() const;
+
+ private:
+  struct Compared {
+    std::string name;
+    std::size_t in_a, in_b;
+    Samples differences;
+  };
+  std::vector<Compared> quantities_;
+};
+
+/// The same of all runs at once. scores: [run], of one tracker.
 TrackerSummary summarise(const std::string& name, const Scorer& scorer, const std::vector<const RunScore*>& scores,
                          const ScoringRule& rule);
 
@@ -51,7 +100,7 @@ SquaredErrors squared_errors_in(const RunScore& score, std::size_t quantity, int
 /// How many phases the runs tell apart.
 int phase_count(const std::vector<const RunScore*>& scores);
 
-/// a - b of the RMSE, for the quantities that both have.
+/// DifferenceTally of all runs at once.
 std::vector<PairedDifference> paired_difference(const Scorer& scorer_a, const std::vector<const RunScore*>& a,
                                                 const Scorer& scorer_b, const std::vector<const RunScore*>& b);
 

@@ -5,7 +5,7 @@
 
 #include "truebearing/core/error.hpp"
 #include "truebearing/evaluation/run_score.hpp"
-#include "truebearing/evaluation/statistics.hpp"
+#include "truebearing/evaluation/samples.hpp"
 #include "truebearing/io/table_reader.hpp"
 
 namespace truebearing {
@@ -40,31 +40,40 @@ class TargetMotionRun final : public TargetMotionFigures {
   std::vector<int> steps_;
 };
 
-class TargetMotionMetrics final : public MetricFamily {
+class TargetMotionTally final : public MetricTally {
  public:
-  std::unique_ptr<RunFigures> begin(const RunStart& run) const override {
-    check_truth(run.recording);
-    return std::make_unique<TargetMotionRun>(run);
+  explicit TargetMotionTally(const ScoringRule& rule) : times_s_(rule.times_s), at_times_(times_s_.size()) {}
+
+  void add(const RunScore& run) override {
+    const std::vector<TargetMotionError>& errors = run.of<TargetMotionFigures>()->at_times;
+    for (std::size_t time = 0; time < times_s_.size(); ++time) {
+      AtTime& at = at_times_[time];
+      if (const double range = errors[time].range_percent; std::isfinite(range)) {
+        at.range.add(range);
+        at.range_size.add(std::abs(range));
+      }
+      if (std::isfinite(errors[time].course_deg)) at.course.add(errors[time].course_deg);
+      if (std::isfinite(errors[time].speed_mps)) at.speed.add(errors[time].speed_mps);
+    }
   }
 
-  std::vector<Metric> finish(const TrackerRuns& runs) const override {
+  std::vector<Metric> metrics() const override {
     std::vector<Metric> metrics;
     double time_to_20_s = std::nan("");
-    for (std::size_t time = 0; time < runs.rule.times_s.size(); ++time) {
-      const double time_s = runs.rule.times_s[time];
+    for (std::size_t time = 0; time < times_s_.size(); ++time) {
+      const double time_s = times_s_[time];
+      const AtTime& at = at_times_[time];
       const auto add = [&](const char* name, const char* unit, Estimate figure,
                            MetricTable table = MetricTable::figures) {
         metrics.push_back({name, unit, time_s, figure.value, figure.se, table});
       };
-      std::vector<double> range = errors_at(runs, time, &TargetMotionError::range_percent);
-      const Estimate mean = mean_of(range);
+      const Estimate mean = at.range.mean();
       add("range_error_mean", "percent", mean);
-      add("range_error_std", "percent", standard_deviation_of(range));
-      add("range_error_rmse", "percent", rmse_of(range));
-      for (double& error : range) error = std::abs(error);
-      add("range_error_median", "percent", {median_of(std::move(range)), std::nan("")}, MetricTable::none);
-      add("course_error_rmse", "deg", rmse_of(errors_at(runs, time, &TargetMotionError::course_deg)));
-      add("speed_error_rmse", "m/s", rmse_of(errors_at(runs, time, &TargetMotionError::speed_mps)));
+      add("range_error_std", "percent", at.range.standard_deviation());
+      add("range_error_rmse", "percent", at.range.rmse());
+      add("range_error_median", "percent", {at.range_size.value(), std::nan("")}, MetricTable::none);
+      add("course_error_rmse", "deg", at.course.rmse());
+      add("speed_error_rmse", "m/s", at.speed.rmse());
       if (std::isnan(time_to_20_s) && std::abs(mean.value) <= 20.0) time_to_20_s = time_s;
     }
     metrics.push_back({"time_to_20_percent", "s", std::nullopt, time_to_20_s, std::nan("")});
@@ -72,12 +81,23 @@ class TargetMotionMetrics final : public MetricFamily {
   }
 
  private:
-  static std::vector<double> errors_at(const TrackerRuns& runs, std::size_t time, double TargetMotionError::*part) {
-    std::vector<double> errors;
-    for (const RunScore* run : runs.scores)
-      if (const double error = run->of<TargetMotionFigures>()->at_times[time].*part; std::isfinite(error))
-        errors.push_back(error);
-    return errors;
+  struct AtTime {
+    Samples range, course, speed;
+    MedianOf range_size;
+  };
+  std::vector<double> times_s_;
+  std::vector<AtTime> at_times_;
+};
+
+class TargetMotionMetrics final : public MetricFamily {
+ public:
+  std::unique_ptr<RunFigures> begin(const RunStart& run) const override {
+    check_truth(run.recording);
+    return std::make_unique<TargetMotionRun>(run);
+  }
+
+  std::unique_ptr<MetricTally> tally(const ScoringRule& rule, const Scorer&) const override {
+    return std::make_unique<TargetMotionTally>(rule);
   }
 };
 

@@ -1,11 +1,13 @@
 #include "truebearing/evaluation/time_metrics.hpp"
 
-#include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
 
 #include "truebearing/core/chi_square.hpp"
 #include "truebearing/evaluation/run_score.hpp"
-#include "truebearing/evaluation/statistics.hpp"
+#include "truebearing/evaluation/samples.hpp"
 
 namespace truebearing {
 namespace {
@@ -21,93 +23,135 @@ double nees_at(const RunScore& run, std::size_t time) {
   return step < 0 ? std::nan("") : run.nees[static_cast<std::size_t>(step)];
 }
 
-// The figures of one tracker at one time.
+// The figures of one tracker at one time. Runs without a finite value do not count for it.
 class TimeFigures {
  public:
-  TimeFigures(const TrackerRuns& runs, std::size_t time) : runs_(runs), time_(time) {}
+  TimeFigures(const ScoringRule& rule, const Scorer& scorer, std::size_t time)
+      : rule_(rule), scorer_(scorer), time_(time), errors_(scorer.quantities().size()) {}
+
+  void take(const RunScore& run) {
+    for (std::size_t q = 0; q < errors_.size(); ++q)
+      if (const double error = error_at(run, q, time_); std::isfinite(error)) {
+        errors_[q].all.add(error);
+        errors_[q].median.add(error);
+      }
+    if (const double nees = nees_at(run, time_); std::isfinite(nees)) {
+      nees_.add(nees);
+      covered_.add(nees <= quantile_);
+    }
+    if (run.time_steps[time_] < 0) return;
+    missing_.add(!std::isfinite(error_at(run, 0, time_)));
+    lost_.add(is_lost(run));
+  }
 
   void add_quantities(std::vector<Metric>& metrics) const {
-    const std::vector<std::string>& quantities = runs_.scorer.quantities();
+    const std::vector<std::string>& quantities = scorer_.quantities();
     for (std::size_t q = 0; q < quantities.size(); ++q) {
       const std::string name = name_of(quantities[q]), unit = unit_of(quantities[q]);
-      const std::vector<double> errors = finite([&](const RunScore& run) { return error_at(run, q, time_); });
-      add(metrics, name + "_rmse", unit, rmse_of(errors));
-      add(metrics, name + "_median", unit, {median_of(errors), std::nan("")}, MetricTable::none);
+      add(metrics, name + "_rmse", unit, errors_[q].all.rmse());
+      add(metrics, name + "_median", unit, {errors_[q].median.value(), std::nan("")}, MetricTable::none);
     }
   }
 
   void add_consistency(std::vector<Metric>& metrics) const {
-    const std::vector<double> nees = finite([&](const RunScore& run) { return nees_at(run, time_); });
-    const double quantile = chi_square_quantile(0.95, runs_.scorer.dimension());
-    add(metrics, "nees", "1", mean_of(nees), MetricTable::none);
-    std::vector<double> covered;
-    for (const double value : nees) covered.push_back(value <= quantile ? 1.0 : 0.0);
-    add(metrics, "coverage95", "share", share_of(covered), MetricTable::none);
-    const auto is_missing = [&](const RunScore& run) { return !std::isfinite(error_at(run, 0, time_)); };
-    add(metrics, "missing_share", "share", share_of(counted(is_missing)), MetricTable::none);
-    if (runs_.rule.loss_thresholds.empty()) return;
-    add(metrics, "loss_rate", "share", share_of(counted([&](const RunScore& run) { return is_lost(run); })));
+    add(metrics, "nees", "1", nees_.mean(), MetricTable::none);
+    add(metrics, "coverage95", "share", covered_.share(), MetricTable::none);
+    add(metrics, "missing_share", "share", missing_.share(), MetricTable::none);
+    if (!rule_.loss_thresholds.empty()) add(metrics, "loss_rate", "share", lost_.share());
   }
 
  private:
   void add(std::vector<Metric>& metrics, std::string name, std::string unit, Estimate figure,
            MetricTable table = MetricTable::figures) const {
-    metrics.push_back({std::move(name), std::move(unit), runs_.rule.times_s[time_], figure.value, figure.se, table});
-  }
-
-  template <typename Value>
-  std::vector<double> finite(const Value& value) const {
-    std::vector<double> values;
-    for (const RunScore* run : runs_.scores)
-      if (const double v = value(*run); std::isfinite(v)) values.push_back(v);
-    return values;
-  }
-
-  // 1 for a run that `is`, 0 for another that counts.
-  template <typename Is>
-  std::vector<double> counted(const Is& is) const {
-    return finite([&](const RunScore& run) { return run.time_steps[time_] < 0 ? std::nan("") : is(run) ? 1.0 : 0.0; });
+    metrics.push_back({std::move(name), std::move(unit), rule_.times_s[time_], figure.value, figure.se, table});
   }
 
   bool is_lost(const RunScore& run) const {
-    for (const auto& [name, threshold] : runs_.rule.loss_thresholds)
-      if (const auto q = runs_.scorer.quantity(name); q && !(error_at(run, *q, time_) <= threshold)) return true;
+    for (const auto& [name, threshold] : rule_.loss_thresholds)
+      if (const auto q = scorer_.quantity(name); q && !(error_at(run, *q, time_) <= threshold)) return true;
     return false;
   }
 
-  const TrackerRuns& runs_;
+  struct Errors {
+    Samples all;
+    MedianOf median;
+  };
+  const ScoringRule& rule_;
+  const Scorer& scorer_;
   std::size_t time_;
+  double quantile_ = chi_square_quantile(0.95, scorer_.dimension());
+  std::vector<Errors> errors_;  // [quantity]
+  Samples nees_;
+  Share covered_, missing_, lost_;
 };
 
-class TimeMetrics final : public MetricFamily {
+class TimeTally final : public MetricTally {
  public:
-  std::vector<Metric> finish(const TrackerRuns& runs) const override {
+  TimeTally(const ScoringRule& rule, const Scorer& scorer) {
+    for (std::size_t time = 0; time < rule.times_s.size(); ++time) at_times_.emplace_back(rule, scorer, time);
+  }
+
+  void add(const RunScore& run) override {
+    for (TimeFigures& figures : at_times_) figures.take(run);
+  }
+
+  std::vector<Metric> metrics() const override {
     std::vector<Metric> metrics;
-    for (std::size_t time = 0; time < runs.rule.times_s.size(); ++time) {
-      const TimeFigures figures(runs, time);
+    for (const TimeFigures& figures : at_times_) {
       figures.add_quantities(metrics);
       figures.add_consistency(metrics);
     }
     return metrics;
   }
 
-  std::vector<PairedDifference> paired(const TrackerRuns& a, const TrackerRuns& b) const override {
-    std::vector<PairedDifference> differences;
-    for (std::size_t qa = 0; qa < a.scorer.quantities().size(); ++qa) {
-      const std::string& quantity = a.scorer.quantities()[qa];
-      const std::optional<std::size_t> qb = b.scorer.quantity(quantity);
-      if (!qb) continue;
-      for (std::size_t time = 0; time < a.rule.times_s.size(); ++time) {
-        std::vector<double> values;
-        for (std::size_t run = 0; run < a.scores.size(); ++run) {
-          const double value = error_at(*a.scores[run], qa, time) - error_at(*b.scores[run], *qb, time);
-          if (std::isfinite(value)) values.push_back(value);
-        }
-        const Estimate mean = mean_of(values);
-        differences.push_back({quantity, mean.value, mean.se, title_of(quantity), a.rule.times_s[time]});
+ private:
+  std::vector<TimeFigures> at_times_;
+};
+
+class TimePairTally final : public PairTally {
+ public:
+  TimePairTally(const ScoringRule& rule, const Scorer& a, const Scorer& b) : times_s_(rule.times_s) {
+    for (std::size_t qa = 0; qa < a.quantities().size(); ++qa)
+      if (const std::optional<std::size_t> qb = b.quantity(a.quantities()[qa]))
+        quantities_.push_back({a.quantities()[qa], qa, *qb, std::vector<Samples>(times_s_.size())});
+  }
+
+  void add(const RunScore& a, const RunScore& b) override {
+    for (Compared& compared : quantities_)
+      for (std::size_t time = 0; time < times_s_.size(); ++time) {
+        const double value = error_at(a, compared.in_a, time) - error_at(b, compared.in_b, time);
+        if (std::isfinite(value)) compared.at_times[time].add(value);
       }
-    }
+  }
+
+  std::vector<PairedDifference> differences() const override {
+    std::vector<PairedDifference> differences;
+    for (const Compared& compared : quantities_)
+      for (std::size_t time = 0; time < times_s_.size(); ++time) {
+        const Estimate mean = compared.at_times[time].mean();
+        differences.push_back({compared.name, mean.value, mean.se, title_of(compared.name), times_s_[time]});
+      }
     return differences;
+  }
+
+ private:
+  struct Compared {
+    std::string name;
+    std::size_t in_a, in_b;
+    std::vector<Samples> at_times;
+  };
+  std::vector<double> times_s_;
+  std::vector<Compared> quantities_;
+};
+
+class TimeMetrics final : public MetricFamily {
+ public:
+  std::unique_ptr<MetricTally> tally(const ScoringRule& rule, const Scorer& scorer) const override {
+    return std::make_unique<TimeTally>(rule, scorer);
+  }
+
+  std::unique_ptr<PairTally> pair_tally(const ScoringRule& rule, const Scorer& a, const Scorer& b) const override {
+    return std::make_unique<TimePairTally>(rule, a, b);
   }
 };
 

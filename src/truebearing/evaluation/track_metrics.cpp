@@ -7,7 +7,7 @@
 
 #include "truebearing/core/constants.hpp"
 #include "truebearing/evaluation/metric_registry.hpp"
-#include "truebearing/evaluation/statistics.hpp"
+#include "truebearing/evaluation/samples.hpp"
 #include "truebearing/evaluation/summary.hpp"
 
 namespace truebearing {
@@ -48,36 +48,124 @@ const TrackOutcome& outcome_of(const RunScore& run) {
   return run.of<TrackFigures>()->outcome;
 }
 
-bool is_any(const RunScore&) {
-  return true;
-}
-
-bool is_clean(const RunScore& run) {
-  return outcome_of(run).is_clean();
-}
-
-bool lacks_an_outcome(const TrackerRuns& runs) {
-  return std::any_of(runs.scores.begin(), runs.scores.end(),
-                     [](const RunScore* run) { return !run->of<TrackFigures>(); });
-}
-
-Estimate mse_over(const TrackerRuns& runs, std::size_t quantity, bool (*wanted)(const RunScore&)) {
-  std::vector<SquaredErrors> errors;
-  for (const RunScore* run : runs.scores)
-    if (wanted(*run)) errors.push_back(squared_errors(*run, quantity));
-  return pooled_mse(errors);
-}
-
 // Of one run; of one phase of it where that is not negative.
 double mse(const RunScore& run, std::size_t quantity, int phase) {
   return mean_square(phase < 0 ? squared_errors(run, quantity) : squared_errors_in(run, quantity, phase));
 }
 
-std::string phase_name(const TrackerRuns& runs, int phase) {
-  const std::vector<std::string>& names = runs.scores.front()->of<TrackFigures>()->phases;
-  const auto place = static_cast<std::size_t>(phase);
-  return place < names.size() ? names[place] : fmt::format("phase {}", place + 1);
-}
+class TrackTally final : public MetricTally {
+ public:
+  TrackTally(std::string followed, const Scorer& scorer)
+      : followed_(std::move(followed)),
+        quantities_(scorer.quantities()),
+        all_have_(scorer.quantity(followed_).has_value()),
+        clean_errors_(quantities_.size()) {}
+
+  void add(const RunScore& run) override {
+    all_have_ = all_have_ && run.of<TrackFigures>();
+    if (!all_have_) return;
+    const TrackOutcome& outcome = outcome_of(run);
+    for (std::size_t q = 0; q < quantities_.size(); ++q) {
+      const SquaredErrors errors = squared_errors(run, q);
+      if (outcome.is_clean()) clean_errors_[q].add(errors);
+      if (quantities_[q] == followed_) all_errors_.add(errors);
+    }
+    swaps_ += outcome.is_swap();
+    losses_ += outcome.is_loss();
+    excursions_ += outcome.excursion;
+    clean_ += outcome.is_clean();
+    bad_.add(outcome.is_swap() || outcome.is_loss());
+  }
+
+  std::vector<Metric> metrics() const override {
+    std::vector<Metric> metrics;
+    if (!all_have_) return metrics;
+    const auto add = [&](std::string name, std::string unit, Estimate figure) {
+      metrics.push_back({std::move(name), std::move(unit), std::nullopt, figure.value, figure.se, MetricTable::tracks});
+    };
+    for (std::size_t q = 0; q < quantities_.size(); ++q) {
+      const std::string unit = squared_unit_of(quantities_[q]);
+      const bool is_followed = quantities_[q] == followed_;
+      add(is_followed ? "clean_mse" : name_of(quantities_[q]) + "_clean_mse", unit, clean_errors_[q].mse());
+      if (is_followed) add("all_mse", unit, all_errors_.mse());
+    }
+    const auto add_count = [&](const char* name, double count) { add(name, "runs", {count, std::nan("")}); };
+    add_count("swap_runs", swaps_);
+    add_count("lost_runs", losses_);
+    add("bad_share", "share", bad_.share());
+    add_count("excursion_runs", excursions_);
+    add_count("clean_runs", clean_);
+    return metrics;
+  }
+
+ private:
+  std::string followed_;
+  std::vector<std::string> quantities_;
+  bool all_have_;                        // an outcome, of the runs so far
+  std::vector<RunErrors> clean_errors_;  // [quantity]
+  RunErrors all_errors_;                 // of the one that is followed
+  double swaps_ = 0.0, losses_ = 0.0, excursions_ = 0.0, clean_ = 0.0;
+  Share bad_;
+};
+
+class TrackPairTally final : public PairTally {
+ public:
+  TrackPairTally(const Scorer& a, const Scorer& b) {
+    for (std::size_t qa = 0; qa < a.quantities().size(); ++qa)
+      if (const std::optional<std::size_t> qb = b.quantity(a.quantities()[qa]))
+        quantities_.push_back({a.quantities()[qa], qa, *qb, {}});
+  }
+
+  void add(const RunScore& a, const RunScore& b) override {
+    all_have_ = all_have_ && a.of<TrackFigures>() && b.of<TrackFigures>();
+    if (!all_have_) return;
+    if (names_.empty()) names_ = a.of<TrackFigures>()->phases;
+    phases_ = std::max(phases_, phase_count({&a, &b}));
+    if (!is_clean(a) || !is_clean(b)) return;
+    for (Compared& compared : quantities_) {
+      compared.by_phase.resize(static_cast<std::size_t>(phases_) + 1);
+      for (int phase = -1; phase < phases_; ++phase) {
+        const double value = mse(a, compared.in_a, phase) - mse(b, compared.in_b, phase);
+        if (!std::isnan(value)) compared.by_phase[static_cast<std::size_t>(phase + 1)].add(value);
+      }
+    }
+  }
+
+  std::vector<PairedDifference> differences() const override {
+    std::vector<PairedDifference> differences;
+    if (!all_have_) return differences;
+    for (const Compared& compared : quantities_)
+      for (std::size_t place = 0; place <= static_cast<std::size_t>(phases_); ++place) {
+        const Estimate mean = place < compared.by_phase.size() ? compared.by_phase[place].mean() : Estimate{kNaN, kNaN};
+        std::string name = compared.name + "2_clean";
+        std::string title = fmt::format("{} {}", name_of(compared.name), squared_unit_of(compared.name));
+        if (place > 0) {
+          name += fmt::format("_{}", phase_name(place - 1));
+          title += fmt::format(", {}", phase_name(place - 1));
+        }
+        differences.push_back(
+            {std::move(name), mean.value, mean.se, std::move(title), std::nullopt, MetricTable::tracks});
+      }
+    return differences;
+  }
+
+ private:
+  static bool is_clean(const RunScore& run) { return outcome_of(run).is_clean(); }
+
+  std::string phase_name(std::size_t phase) const {
+    return phase < names_.size() ? names_[phase] : fmt::format("phase {}", phase + 1);
+  }
+
+  struct Compared {
+    std::string name;
+    std::size_t in_a, in_b;
+    std::vector<Samples> by_phase;  // all of a run, then by phase
+  };
+  std::vector<Compared> quantities_;
+  std::vector<std::string> names_;  // of the phases, in the first run
+  int phases_ = 0;
+  bool all_have_ = true;
+};
 
 class TrackMetrics final : public MetricFamily {
  public:
@@ -88,82 +176,15 @@ class TrackMetrics final : public MetricFamily {
     return quantity ? std::make_unique<TrackRun>(rule_, run, *quantity) : nullptr;
   }
 
-  std::vector<Metric> finish(const TrackerRuns& runs) const override {
-    if (!runs.scorer.quantity(rule_.quantity) || lacks_an_outcome(runs)) return {};
-    std::vector<Metric> metrics;
-    add_errors(runs, metrics);
-    add_counts(runs, metrics);
-    return metrics;
+  std::unique_ptr<MetricTally> tally(const ScoringRule&, const Scorer& scorer) const override {
+    return std::make_unique<TrackTally>(rule_.quantity, scorer);
   }
 
-  std::vector<PairedDifference> paired(const TrackerRuns& a, const TrackerRuns& b) const override {
-    if (lacks_an_outcome(a) || lacks_an_outcome(b)) return {};
-    const int phases = std::max(phase_count(a.scores), phase_count(b.scores));
-    std::vector<PairedDifference> differences;
-    for (std::size_t qa = 0; qa < a.scorer.quantities().size(); ++qa) {
-      const std::string& quantity = a.scorer.quantities()[qa];
-      const std::optional<std::size_t> qb = b.scorer.quantity(quantity);
-      if (!qb) continue;
-      for (int phase = -1; phase < phases; ++phase) {
-        const Estimate mean = clean_difference(a, qa, b, *qb, phase);
-        std::string name = quantity + "2_clean";
-        std::string title = fmt::format("{} {}", name_of(quantity), squared_unit_of(quantity));
-        if (phase >= 0) {
-          name += fmt::format("_{}", phase_name(a, phase));
-          title += fmt::format(", {}", phase_name(a, phase));
-        }
-        differences.push_back(
-            {std::move(name), mean.value, mean.se, std::move(title), std::nullopt, MetricTable::tracks});
-      }
-    }
-    return differences;
+  std::unique_ptr<PairTally> pair_tally(const ScoringRule&, const Scorer& a, const Scorer& b) const override {
+    return std::make_unique<TrackPairTally>(a, b);
   }
 
  private:
-  static void add(std::vector<Metric>& metrics, std::string name, std::string unit, Estimate figure) {
-    metrics.push_back({std::move(name), std::move(unit), std::nullopt, figure.value, figure.se, MetricTable::tracks});
-  }
-
-  void add_errors(const TrackerRuns& runs, std::vector<Metric>& metrics) const {
-    for (std::size_t q = 0; q < runs.scorer.quantities().size(); ++q) {
-      const std::string& quantity = runs.scorer.quantities()[q];
-      const bool is_followed = quantity == rule_.quantity;
-      add(metrics, is_followed ? "clean_mse" : name_of(quantity) + "_clean_mse", squared_unit_of(quantity),
-          mse_over(runs, q, is_clean));
-      if (is_followed) add(metrics, "all_mse", squared_unit_of(quantity), mse_over(runs, q, is_any));
-    }
-  }
-
-  static void add_counts(const TrackerRuns& runs, std::vector<Metric>& metrics) {
-    double swaps = 0.0, losses = 0.0, excursions = 0.0, clean = 0.0;
-    std::vector<double> bad;
-    for (const RunScore* run : runs.scores) {
-      const TrackOutcome& outcome = outcome_of(*run);
-      swaps += outcome.is_swap();
-      losses += outcome.is_loss();
-      excursions += outcome.excursion;
-      clean += outcome.is_clean();
-      bad.push_back(outcome.is_swap() || outcome.is_loss());
-    }
-    const auto add_count = [&](const char* name, double count) { add(metrics, name, "runs", {count, std::nan("")}); };
-    add_count("swap_runs", swaps);
-    add_count("lost_runs", losses);
-    add(metrics, "bad_share", "share", share_of(bad));
-    add_count("excursion_runs", excursions);
-    add_count("clean_runs", clean);
-  }
-
-  static Estimate clean_difference(const TrackerRuns& a, std::size_t qa, const TrackerRuns& b, std::size_t qb,
-                                   int phase) {
-    std::vector<double> values;
-    for (std::size_t run = 0; run < a.scores.size(); ++run) {
-      if (!is_clean(*a.scores[run]) || !is_clean(*b.scores[run])) continue;
-      const double value = mse(*a.scores[run], qa, phase) - mse(*b.scores[run], qb, phase);
-      if (!std::isnan(value)) values.push_back(value);
-    }
-    return mean_of(values);
-  }
-
   TrackRule rule_;
 };
 

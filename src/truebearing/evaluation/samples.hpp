@@ -1,0 +1,85 @@
+// What is kept of many runs for their statistics (statistics.hpp). Of as many as comparisons usually have it is all of
+// them, and figures are exact; of more it is what memory can hold whatever their number, and figures are as good as
+// can be told from it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "truebearing/evaluation/statistics.hpp"
+
+namespace truebearing {
+
+/// So many runs are kept one by one.
+inline constexpr std::size_t kMostRunsApart = std::size_t{1} << 16;
+/// Of errors of all steps of all runs a median is made of the values themselves where there are no more than this.
+inline constexpr std::size_t kMostValuesApart = std::size_t{1} << 22;
+
+/// Squared errors run by run. Beyond kMostRunsApart neighbours are taken together, and the jackknife leaves out groups.
+class RunErrors {
+ public:
+  void add(const SquaredErrors& run);
+  Estimate rmse() const { return pooled_rmse(groups_); }
+  Estimate mse() const { return pooled_mse(groups_); }
+
+ private:
+  std::vector<SquaredErrors> groups_;
+  std::size_t group_size_ = 1;
+  std::size_t in_last_ = 0;
+};
+
+/// The middle of values >= 0. So many are kept one by one; more are counted in bins as wide as 1/4096 of what they hold.
+class MedianOf {
+ public:
+  explicit MedianOf(std::size_t kept_apart = kMostRunsApart) : kept_apart_(kept_apart) {}
+  void add(double value);
+  double value() const;
+
+ private:
+  std::size_t kept_apart_;
+  std::vector<double> values_;
+  std::vector<std::uint32_t> bins_;  // empty while values are kept
+  std::size_t count_ = 0;            // in them
+};
+
+/// Runs for which something is so, of those that count.
+class Share {
+ public:
+  void add(bool is) {
+    ones_ += is ? 1.0 : 0.0;
+    count_ += 1.0;
+  }
+  bool empty() const { return count_ == 0.0; }
+  Estimate share() const { return share_of(ones_, count_); }
+
+ private:
+  double ones_ = 0.0;
+  double count_ = 0.0;
+};
+
+/// One value per run. Beyond kMostRunsApart it is their moments that are kept.
+class Samples {
+ public:
+  void add(double value);
+  bool empty() const { return values_.empty() && x_.n == 0.0; }
+  Estimate mean() const;
+  Estimate rmse() const;
+  Estimate standard_deviation() const;
+
+ private:
+  // Number, mean and sum of squares about it (Chan, Golub and LeVeque 1983).
+  struct Moments {
+    double n = 0.0, mean = 0.0, squares = 0.0;
+    void add(double value);
+    Estimate estimate() const;
+  };
+  void take(double value);
+  bool is_all_apart() const { return x_.n == 0.0; }
+
+  std::vector<double> values_;  // one by one
+  Moments x_, squared_, about_centre_;
+  double centre_ = 0.0;
+};
+
+}  // namespace truebearing

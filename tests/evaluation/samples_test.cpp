@@ -1,0 +1,97 @@
+#include "truebearing/evaluation/samples.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "truebearing/core/random.hpp"
+
+namespace truebearing::samples_test {
+namespace {
+
+std::vector<double> normals(std::size_t count) {
+  RandomStream random({.seed = 3}, StreamId::test);
+  std::vector<double> values(count);
+  for (double& value : values) value = 5.0 + 2.0 * random.normal();
+  return values;
+}
+
+Samples of(const std::vector<double>& values) {
+  Samples samples;
+  for (const double value : values) samples.add(value);
+  return samples;
+}
+
+void expect_near(const Estimate& figure, const Estimate& exact, double relative) {
+  EXPECT_NEAR(figure.value, exact.value, relative * std::abs(exact.value));
+  EXPECT_NEAR(figure.se, exact.se, relative * exact.se);
+}
+
+TEST(Samples, FewAreExact) {
+  const std::vector<double> values = normals(kMostRunsApart);
+  const Samples samples = of(values);
+  EXPECT_EQ(samples.mean().value, mean_of(values).value);
+  EXPECT_EQ(samples.mean().se, mean_of(values).se);
+  EXPECT_EQ(samples.rmse().se, rmse_of(values).se);
+  EXPECT_EQ(samples.standard_deviation().se, standard_deviation_of(values).se);
+}
+
+// Second-order terms of the jackknife are of the size 1 / n.
+TEST(Samples, ManyAreAsGood) {
+  const std::vector<double> values = normals(3 * kMostRunsApart);
+  const Samples samples = of(values);
+  expect_near(samples.mean(), mean_of(values), 1e-9);
+  expect_near(samples.rmse(), rmse_of(values), 1e-4);
+  expect_near(samples.standard_deviation(), standard_deviation_of(values), 1e-4);
+}
+
+TEST(RunErrors, FewAreExactAndManyAreTakenInGroups) {
+  const std::vector<double> values = normals(2 * kMostRunsApart + 7);
+  std::vector<SquaredErrors> runs;
+  RunErrors errors;
+  for (const double value : values) {
+    runs.push_back({value * value, 2.0});
+    errors.add(runs.back());
+    errors.add({});
+    if (runs.size() != kMostRunsApart) continue;
+    EXPECT_EQ(errors.rmse().value, pooled_rmse(runs).value);
+    EXPECT_EQ(errors.rmse().se, pooled_rmse(runs).se) << "runs without errors are passed over";
+  }
+  // The standard error from half as many groups has a spread of 1 / sqrt(2 n) itself; this is five of them.
+  EXPECT_NEAR(errors.rmse().value, pooled_rmse(runs).value, 1e-12 * errors.rmse().value);
+  EXPECT_NEAR(errors.rmse().se, pooled_rmse(runs).se,
+              5.0 / std::sqrt(static_cast<double>(kMostRunsApart)) * pooled_rmse(runs).se);
+}
+
+TEST(MedianOf, IsExactOfFewAndWithinABinOfMany) {
+  std::vector<double> values = normals(100000);
+  for (double& value : values) value = std::abs(value);
+  MedianOf apart(values.size()), binned(1000), none;
+  for (const double value : values) {
+    apart.add(value);
+    binned.add(value);
+  }
+  EXPECT_EQ(apart.value(), median_of(values));
+  EXPECT_NEAR(binned.value(), median_of(values), median_of(values) / 4096.0);
+  EXPECT_TRUE(std::isnan(none.value()));
+}
+
+TEST(MedianOf, TakesAnyValueInABin) {
+  MedianOf binned(0);
+  for (const double value : {0.0, 1e-300, 1e300, 7.0, 7.0, 7.0, HUGE_VAL}) binned.add(value);
+  EXPECT_NEAR(binned.value(), 7.0, 7.0 / 4096.0);
+}
+
+TEST(Share, IsThatOfZerosAndOnes) {
+  Share share;
+  EXPECT_TRUE(share.empty());
+  EXPECT_TRUE(std::isnan(share.share().value));
+  for (const bool is : {true, false, false, true, true}) share.add(is);
+  const Estimate exact = share_of({1.0, 0.0, 0.0, 1.0, 1.0});
+  EXPECT_EQ(share.share().value, exact.value);
+  EXPECT_EQ(share.share().se, exact.se);
+}
+
+}  // namespace
+}  // namespace truebearing::samples_test

@@ -2,10 +2,40 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <concepts>
 #include <optional>
+#include <string>
 #include <utility>
 
 namespace truebearing {
+namespace {
+
+// An option's name where its value was forgotten would be taken for it.
+std::string name_error(const std::string& value) {
+  if (value.empty()) return "is empty";
+  return value.size() > 1 && value.front() == '-' ? value + " is no name (./" + value + " is one)" : "";
+}
+
+std::string count_error(const std::string& value) {
+  return !value.empty() && value.front() == '-' ? value + " is negative" : "";
+}
+
+// Text names something; of numbers without a sign the library takes -1 for the largest.
+template <typename Value>
+void check_value(CLI::Option* option) {
+  if constexpr (std::same_as<Value, std::string> || std::same_as<Value, std::vector<std::string>>)
+    option->check(CLI::Validator(name_error, ""));
+  if constexpr (std::same_as<Value, std::uint64_t> || std::same_as<Value, std::optional<std::uint64_t>>)
+    option->check(CLI::Validator(count_error, ""));
+}
+
+// As the library's own, which prints the greatest number there is in full.
+std::string sign_error(const std::string& value) {
+  double number = 0.0;
+  return CLI::detail::lexical_cast(value, number) && number > 0.0 ? "" : value + " is no number > 0";
+}
+
+}  // namespace
 
 Argument Argument::required() const {
   option_->required();
@@ -23,7 +53,7 @@ Argument Argument::within(int least, int greatest) const {
 }
 
 Argument Argument::positive() const {
-  option_->check(CLI::PositiveNumber);
+  option_->check(CLI::Validator(sign_error, "POSITIVE"));
   return *this;
 }
 
@@ -39,7 +69,9 @@ Argument Argument::default_shown() const {
 
 template <typename Value>
 Argument Subcommand::argument(const std::string& names, Value& value, const std::string& description) const {
-  return Argument{app_->add_option(names, value, description)};
+  CLI::Option* option = app_->add_option(names, value, description);
+  check_value<Value>(option);
+  return Argument{option};
 }
 
 Argument Subcommand::flag(const std::string& name, bool& value, const std::string& description) const {

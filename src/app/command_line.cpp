@@ -3,13 +3,40 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <iostream>
+#include <new>
 #include <system_error>
+#include <unistd.h>
 
+#include "app/output.hpp"
 #include "app/subcommands.hpp"
 #include "truebearing/core/error.hpp"
 
 namespace truebearing {
+namespace {
+
+// A file that is opened where a standard stream is closed would take its place, and what is meant for the stream would
+// end in the file. In place of such a stream stands one that refuses what it is for.
+void occupy_standard_streams() {
+  for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream)
+    if (::fcntl(stream, F_GETFD) == -1) ::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+}
+
+int fail(const std::string& what) {
+  say("truebearing: " + what);
+  return 1;
+}
+
+// Help, the version, or what is wrong with the usage.
+int finish(CLI::App& app, const CLI::ParseError& error) {
+  const bool wrong = app.exit(error) != 0;
+  if (!std::cout.flush()) return fail("standard output: cannot be written");
+  return wrong ? 2 : 0;
+}
+
+}  // namespace
 
 int command_line(int argc, const char* const* argv) {
   CLI::App app{"Trackers that learn to correct themselves.", "truebearing"};
@@ -24,21 +51,22 @@ int command_line(int argc, const char* const* argv) {
   add_check(all);
   add_rules(all);
   add_tma(all);
+  occupy_standard_streams();
+  std::ios::sync_with_stdio(false);  // of standard input is known then what has come
   try {
     app.parse(argc, argv);
     if (std::fflush(stdout) != 0) throw InputError("standard output", "cannot be written");
     return 0;
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    return finish(app, error);
   } catch (const InputError& error) {
-    fmt::print(stderr, "truebearing: {}\n", error.what());
-    return 1;
+    return fail(error.what());
   } catch (const std::system_error& error) {  // of a full disk behind standard output, say
-    fmt::print(stderr, "truebearing: {}\n", error.what());
-    return 1;
+    return fail(error.what());
+  } catch (const std::bad_alloc&) {
+    return fail("there is not enough memory for this");
   } catch (const std::exception& error) {
-    fmt::print(stderr, "truebearing: internal error: {}\n", error.what());
-    return 1;
+    return fail(fmt::format("internal error: {}", error.what()));
   }
 }
 

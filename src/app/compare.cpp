@@ -1,8 +1,10 @@
 // truebearing compare STUDY.toml: the study's trackers on Monte Carlo runs, scored against the truth.
 #include <cstdint>
+#include <filesystem>
 #include <fmt/format.h>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "app/output.hpp"
 #include "app/subcommands.hpp"
@@ -25,6 +27,9 @@ struct CompareArguments {
 
 void run_compare(const CompareArguments& options) {
   Study study = Study::load(options.study);
+  std::vector<std::filesystem::path> inputs = study.input_files();
+  if (!options.truth.empty()) inputs.emplace_back(options.truth);
+  check_outputs({options.json}, inputs);
   const std::uint64_t seed = options.seed.value_or(study.seed());
   CorrectionModels models;
   if (options.retrain) {
@@ -57,7 +62,7 @@ void run_compare(const CompareArguments& options) {
     comparison.ns_per_step.emplace_back(trackers.name(i),
                                         time_per_step_ns(*study.make_tracker(trackers.name(i), models), timed));
 
-  if (options.json != "-") fmt::print("{}{}", notes, comparison_table(comparison));
+  if (!is_standard_output(options.json)) fmt::print("{}{}", notes, comparison_table(comparison));
   if (!options.json.empty()) write_output(options.json, comparison_json(comparison));
 }
 

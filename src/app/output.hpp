@@ -2,13 +2,56 @@
 #pragma once
 
 #include <chrono>
+#include <cstdio>
+#include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
+#include <string_view>
+#include <vector>
+
+#include "truebearing/io/file.hpp"
 
 namespace truebearing {
 
-/// Writes `text` to standard output where `path` is "-", else to that file, whole or not at all.
+/// Is it standard output: "-", or what else leads there ("/dev/stdout")?
+bool is_standard_output(const std::string& path);
+
+/// To be called before the work. Throws InputError where an output would destroy one of the run's own inputs, through
+/// links too, where two outputs are one file, or where nothing can be written. Empty outputs are passed over; "-" among
+/// the inputs is standard input.
+void check_outputs(const std::vector<std::string>& outputs, const std::vector<std::filesystem::path>& inputs);
+
+/// An output that is written as its text comes: to standard output, a pipe or a device at once, to a file so that it is
+/// there whole after finish() and not before. Throws InputError.
+class OutputStream {
+ public:
+  explicit OutputStream(const std::string& path);
+  ~OutputStream();
+
+  void write(std::string_view text);
+  /// Passes on what was written; a file has time until finish().
+  void flush();
+  void finish();
+
+ private:
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  void check(bool written) const;
+
+  std::string name_;
+  std::unique_ptr<FileWriter> file_;
+  std::string waiting_;                       // to be written to it
+  std::unique_ptr<std::FILE, Close> opened_;  // a pipe or a device
+  std::FILE* stream_ = nullptr;               // that, or standard output
+};
+
+/// Writes `text` to standard output where `path` leads there, else to that file, whole or not at all.
 void write_output(const std::string& path, const std::string& text);
+
+/// A line for whoever watches, on standard error. Nobody may be there: what cannot be written is lost.
+void say(const std::string& line);
 
 /// A line on the terminal that says how far long work is and how long it will still take. Silent where standard output
 /// or standard error is no terminal, or `quiet`.

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <memory>
 #include <optional>
+#include <system_error>
+#include <vector>
 
 #include "app/output.hpp"
 #include "app/subcommands.hpp"
@@ -39,15 +41,32 @@ std::unique_ptr<Scenario> scenario_of(const SimulateArguments& options) {
                                            bearings->parameters());
 }
 
+std::filesystem::path log_path(const SimulateArguments& options, std::size_t run, const char* extension) {
+  return std::filesystem::path(options.folder) / fmt::format("run_{:04}{}", run, extension);
+}
+
 // As a measurement log, or a snapshot log of a line array.
-void write_log(std::filesystem::path path, const Recording& recording) {
+void write_log(const SimulateArguments& options, std::size_t run, const Recording& recording) {
   if (measures_snapshots(recording.measured))
-    write_snapshot_log(path.replace_extension(".h5"), recording);
+    write_snapshot_log(log_path(options, run, ".h5"), recording);
   else
-    write_file_atomically(path, write_recording(recording));
+    write_file_atomically(log_path(options, run, ".csv"), write_recording(recording));
+}
+
+// A track that lies among the logs would be overwritten by one of them.
+void check_logs(const SimulateArguments& options) {
+  std::error_code unknown;
+  if (!std::filesystem::exists(options.folder, unknown)) return;
+  std::vector<std::filesystem::path> inputs{options.scenario};
+  if (!options.track.empty()) inputs.emplace_back(options.track);
+  for (std::size_t run = 0; run < options.runs; ++run)
+    for (const char* extension : {".csv", ".h5"})
+      if (const std::filesystem::path log = log_path(options, run, extension); std::filesystem::exists(log, unknown))
+        check_outputs({log.string()}, inputs);
 }
 
 void simulate(const SimulateArguments& options) {
+  check_logs(options);
   const std::unique_ptr<Scenario> scenario = scenario_of(options);
   std::error_code failure;
   std::filesystem::create_directories(options.folder, failure);
@@ -55,7 +74,7 @@ void simulate(const SimulateArguments& options) {
   ProgressLine progress("simulate", options.quiet);
   for (std::size_t run = 0; run < options.runs; ++run) {
     const Recording recording = scenario->simulate({options.seed, Role::evaluation, run});
-    write_log(std::filesystem::path(options.folder) / fmt::format("run_{:04}.csv", run), recording);
+    write_log(options, run, recording);
     progress.show(run + 1, options.runs);
   }
 }

@@ -203,6 +203,7 @@ void solve(Windows& windows, const TmaArguments& options, TmaAnswer& answer) {
 void tma(const TmaArguments& options) {
   if ((options.range_m > 0.0) != (options.range_sigma_m > 0.0))
     throw InputError("--range, --range-sigma", "stand one without the other", "both or neither");
+  check_outputs({options.json}, {options.log});
   const Recording recording = read_log(options);
   TmaAnswer answer;
   answer.log = options.log;
@@ -214,7 +215,7 @@ void tma(const TmaArguments& options) {
   if (!answer.estimate.found)
     throw InputError(options.log, "has bearings that no start of " + options.method + " ends in numbers for",
                      "another --method");
-  if (options.json != "-") fmt::print("{}", tma_text(answer));
+  if (!is_standard_output(options.json)) fmt::print("{}", tma_text(answer));
   if (!options.json.empty()) write_output(options.json, tma_json(answer));
 }
 

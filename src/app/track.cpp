@@ -1,24 +1,25 @@
-// truebearing track STUDY.toml LOG: the study's trackers on a recorded log. With truth in the log, their errors;
-// without, what can still be said: NIS and its consistency, whiteness, rejected and missing measurements. And what the
-// trackers noticed beside their estimates.
+// truebearing track STUDY.toml LOG: the study's trackers on a recorded log, row by row as it comes. With truth in the
+// log, their errors; without, what can still be said: NIS and its consistency, whiteness, rejected and missing
+// measurements. And what the trackers noticed beside their estimates.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <map>
 #include <memory>
-#include <span>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/output.hpp"
 #include "app/subcommands.hpp"
-#include "truebearing/evaluation/innovation_consistency.hpp"
+#include "app/track_report.hpp"
 #include "truebearing/evaluation/report.hpp"
-#include "truebearing/evaluation/text_table.hpp"
+#include "truebearing/evaluation/time_steps.hpp"
 #include "truebearing/io/csv.hpp"
 #include "truebearing/recording/geographic_track.hpp"
 #include "truebearing/recording/recording_csv.hpp"
 #include "truebearing/recording/snapshot_log.hpp"
+#include "truebearing/study/log_fit.hpp"
 #include "truebearing/study/measured_check.hpp"
 #include "truebearing/study/study.hpp"
 #include "truebearing/tracker/step_log.hpp"
@@ -33,181 +34,326 @@ struct TrackArguments {
   std::string output;
   std::string json;
   std::string events;
+
+  bool only_text_for_programs() const {
+    return is_standard_output(output) || is_standard_output(json) || is_standard_output(events);
+  }
+  std::vector<std::string> outputs() const { return {output, json, events}; }
 };
 
-// One recording, or one for each track of a step log. Of several targets of a line array there is one recording.
-std::vector<RecordedTrack> read_log(const Study& study, const std::string& log) {
-  if (const auto* logs = dynamic_cast<const StepLogScenario*>(&study.scenario())) return logs->read(log);
-  const bool snapshots = is_snapshot_log(log);
-  if (!snapshots && is_geographic_track(log))
-    throw InputError(
-        log, "holds recorded positions, which are no measurements",
-        fmt::format("`truebearing compare {} --truth {}`, which measures them", study.path().string(), log));
-  Recording recording = snapshots ? read_snapshot_log(log) : read_recording(log);
-  check_measured(recording.measured, study.scenario(), log);
-  return {{0, std::move(recording)}};
-}
-
-// Writes the records of all trackers whose state is the largest.
-class TrackWriter {
+// Writes the records of all trackers whose state is the largest, as they come.
+class RecordOutput {
  public:
-  explicit TrackWriter(const TrackerSet& trackers) {
+  // measured: columns of the log, as many as an innovation has components; or 0.
+  RecordOutput(const std::string& path, const TrackerSet& trackers, int measured)
+      : output_(path), space_(widest(trackers)), writer_(*space_, std::max(measured, 1)) {}
+
+  // The tracks of several are only in order when all are there.
+  void wait_for_all() { waits_ = true; }
+
+  void add(const std::string& name, const StepRecord& record) {
+    if (record.space == space_) writer_.add(name, record);
+    if (!waits_) output_.write(writer_.take());
+  }
+  void flush() { output_.flush(); }
+  void finish() {
+    if (waits_) writer_.sort_by_time();
+    output_.write(writer_.take());
+    output_.finish();
+  }
+
+ private:
+  static const StateSpace* widest(const TrackerSet& trackers) {
     int widest = 0;
     for (int i = 1; i < trackers.size(); ++i)
       if (trackers.space(i).size() > trackers.space(widest).size()) widest = i;
-    space_ = &trackers.space(widest);
+    return &trackers.space(widest);
   }
 
-  void add(const std::string& name, const StepRecord& record) {
-    if (record.space != space_) return;
-    // The first records of a track, and all of a corrected one, have no innovation.
-    if (measurements_ == 0 && record.innovation) measurements_ = static_cast<int>(record.innovation->nu.size());
-    rows_.emplace_back(name, record);
-  }
-
-  std::string text(bool sorted_by_time) const {
-    StepLogWriter writer(*space_, std::max(measurements_, 1));
-    for (const auto& [name, record] : rows_) writer.add(name, record);
-    if (sorted_by_time) writer.sort_by_time();
-    return writer.str();
-  }
-
- private:
+  OutputStream output_;
   const StateSpace* space_;
-  int measurements_ = 0;  // in an innovation
-  std::vector<std::pair<std::string, StepRecord>> rows_;
+  StepLogWriter writer_;
+  bool waits_ = false;
 };
 
-void print_consistency(const TrackerSet& trackers, const std::vector<InnovationConsistency>& consistency,
-                       const std::vector<TrackerCounts>& all_counts) {
-  fmt::print("{:<14}{:>8}{:>24}{:>22}{:>9}{:>9}{:>9}{:>8}\n", "tracker", "steps", "NIS/expected (95 %)",
-             "correlation (95 %)", "missing", "repeated", "gated", "failed");
-  for (int i = 0; i < trackers.size(); ++i) {
-    const InnovationConsistency& c = consistency[static_cast<std::size_t>(i)];
-    const TrackerCounts& counts = all_counts[static_cast<std::size_t>(i)];
-    const std::string nis =
-        c.steps() == 0 ? "-"
-                       : fmt::format("{:.2f} ({:.2f}-{:.2f})", c.nis_ratio(), c.nis_ratio_low(), c.nis_ratio_high());
-    const std::string correlation =
-        c.steps() < 2 ? "-" : fmt::format("{:+.3f} (+-{:.3f})", c.correlation(), c.correlation_limit());
-    fmt::print("{:<14}{:>8}{:>24}{:>22}{:>9}{:>9}{:>9}{:>8}\n", trackers.name(i), c.steps(), nis, correlation,
-               counts.missing, counts.repeated, counts.gated, counts.failed);
-  }
-  for (int i = 0; i < trackers.size(); ++i)
-    if (consistency[static_cast<std::size_t>(i)].is_implausible_at_start())
-      fmt::print(
-          stderr,
-          "truebearing: {}: the first innovations are far from the size that it claims: is a column in another unit?\n",
-          trackers.name(i));
-}
-
-// What each tracker noticed, track by track.
-class EventLog {
+// What the trackers notice, as CSV.
+class EventOutput {
  public:
-  void add(const std::string& tracker, std::span<const TrackEvent> events) {
-    for (const TrackEvent& event : events) lines_.push_back({tracker, event});
-  }
-  bool empty() const { return lines_.empty(); }
+  explicit EventOutput(const std::string& path) : output_(path), csv_({"tracker", "time_s", "event", "value"}) {}
 
-  std::string table() const {
-    std::vector<std::vector<std::string>> rows{{"tracker", "time s", "event", "value"}};
-    for (const auto& [tracker, event] : lines_)
-      rows.push_back({tracker, fmt::format("{:g}", event.time_s), std::string(to_string(event.kind)),
-                      std::isfinite(event.value) ? fmt::format("{:g}", event.value) : ""});
-    return aligned(rows);
+  void add(const std::string& tracker, const TrackEvent& event) {
+    csv_.text(tracker);
+    csv_.number(event.time_s);
+    csv_.text(to_string(event.kind));
+    csv_.number(event.value);
+    csv_.end_row();
   }
-
-  std::string csv() const {
-    CsvWriter csv({"tracker", "time_s", "event", "value"});
-    for (const auto& [tracker, event] : lines_) {
-      csv.text(tracker);
-      csv.number(event.time_s);
-      csv.text(std::string(to_string(event.kind)));
-      csv.number(event.value);
-      csv.end_row();
-    }
-    return csv.str();
+  void flush() {
+    output_.write(csv_.take());
+    output_.flush();
+  }
+  void finish() {
+    output_.write(csv_.take());
+    output_.finish();
   }
 
  private:
-  struct Line {
-    std::string tracker;
-    TrackEvent event;
-  };
-  std::vector<Line> lines_;
+  OutputStream output_;
+  CsvWriter csv_;
+};
+
+// The trackers on a log: what they do is written, counted and remembered for the report.
+class TrackRun {
+ public:
+  TrackRun(const Study& study, const TrackArguments& options, int measured) : trackers_(study.make_tracker_set()) {
+    for (int i = 0; i < trackers_.size(); ++i) all_.emplace_back().name = trackers_.name(i);
+    if (!options.output.empty()) records_.emplace(options.output, trackers_, measured);
+    if (!options.events.empty()) events_.emplace(options.events);
+  }
+
+  const TrackerSet& trackers() const { return trackers_; }
+  const std::vector<Followed>& all() const { return all_; }
+  const LogContents& contents() const { return contents_; }
+
+  // The log's clock is that of the study from epoch_s on.
+  void begin_at(double epoch_s) { contents_.epoch_s = epoch_s; }
+  // Several tracks one after the other, each of which the trackers follow afresh and call by its number.
+  void begin_track(int number) {
+    trackers_.reset();
+    number_ = number;
+    if (records_) records_->wait_for_all();
+  }
+
+  void step(const Measurement& measurement) {
+    ++contents_.measurements;
+    contents_.guess |= measurement.guess.has_value();
+    contents_.last_time_s = measurement.time_s;
+    if (contents_.epoch_s == 0.0) {
+      trackers_.step(measurement);
+    } else {
+      Measurement timed = measurement;
+      timed.time_s -= contents_.epoch_s;
+      trackers_.step(timed);
+    }
+    for (std::size_t i = 0; i < all_.size(); ++i) take(i, measurement.time_s);
+  }
+
+  void flush() {
+    if (records_) records_->flush();
+    if (events_) events_->flush();
+  }
+
+  void end_track(const Recording::Counts& rows) {
+    contents_.missing += static_cast<std::size_t>(rows.missing);
+    for (std::size_t i = 0; i < all_.size(); ++i) {
+      const int entry = static_cast<int>(i);
+      add(trackers_.counts(entry), all_[i].counts);
+      for (const StepRecord& record : trackers_.records(entry))
+        all_[i].last.push_back(as_in_log(record, contents_.last_time_s));
+      seen_events_.clear();
+    }
+  }
+
+  void finish() {
+    if (records_) records_->finish();
+    if (events_) events_->finish();
+  }
+
+ private:
+  static void add(const TrackerCounts& counts, TrackerCounts& sum) {
+    sum.missing += counts.missing;
+    sum.repeated += counts.repeated;
+    sum.out_of_order += counts.out_of_order;
+    sum.gated += counts.gated;
+    sum.failed += counts.failed;
+  }
+
+  bool is_as_in_log() const { return number_ == 0 && contents_.epoch_s == 0.0; }
+
+  // A record of the step at time_s with the track's number and the time that the log has.
+  StepRecord as_in_log(StepRecord record, double time_s) const {
+    record.track += number_;
+    record.time_s = record.time_s == time_s - contents_.epoch_s ? time_s : record.time_s + contents_.epoch_s;
+    return record;
+  }
+
+  void take(std::size_t i, double time_s) {
+    for (const StepRecord& record : trackers_.records(static_cast<int>(i)))
+      is_as_in_log() ? take(i, record) : take(i, as_in_log(record, time_s));
+    const std::span<const TrackEvent> events = trackers_.events(static_cast<int>(i));
+    seen_events_.resize(all_.size());
+    for (; seen_events_[i] < events.size(); ++seen_events_[i]) {
+      TrackEvent event = events[seen_events_[i]];
+      event.time_s += contents_.epoch_s;
+      if (events_) events_->add(all_[i].name, event);
+      all_[i].events.push_back(event);
+    }
+  }
+
+  void take(std::size_t i, const StepRecord& record) {
+    ++all_[i].records;
+    all_[i].innovations.add(record);
+    if (records_) records_->add(all_[i].name, record);
+  }
+
+  TrackerSet trackers_;
+  std::vector<Followed> all_;
+  std::optional<RecordOutput> records_;
+  std::optional<EventOutput> events_;
+  std::vector<std::size_t> seen_events_;  // of each tracker, on this track
+  LogContents contents_;
+  int number_ = 0;
 };
 
 // The log's own measurements as the runs of a comparison, one per track.
 class LogScenario final : public Scenario {
  public:
-  explicit LogScenario(const std::vector<RecordedTrack>& tracks) : tracks_(tracks) {}
-  Recording simulate(const RunKey& key) const override { return tracks_[static_cast<std::size_t>(key.run)].recording; }
-  const StateSpace& truth_space() const override { return *tracks_.front().recording.truth_space; }
+  explicit LogScenario(const std::vector<Recording>& tracks) : tracks_(tracks) {}
+  Recording simulate(const RunKey& key) const override { return tracks_[static_cast<std::size_t>(key.run)]; }
+  const StateSpace& truth_space() const override { return *tracks_.front().truth_space; }
 
  private:
-  const std::vector<RecordedTrack>& tracks_;
+  const std::vector<Recording>& tracks_;
 };
 
-void add(TrackerCounts& sum, const TrackerCounts& counts) {
-  sum.missing += counts.missing;
-  sum.repeated += counts.repeated;
-  sum.out_of_order += counts.out_of_order;
-  sum.gated += counts.gated;
-  sum.failed += counts.failed;
+// A bound asks for more than a log may tell: how loud its targets are. It is left out then.
+template <typename Bound>
+void leave_out_unless_told(std::optional<Bound>& bound, const std::vector<Recording>& tracks,
+                           const ScoringRule& scoring) {
+  if (!bound) return;
+  try {
+    for (const Recording& track : tracks) {
+      if constexpr (std::is_same_v<Bound, AngleBound>)
+        static_cast<void>(bound->variances(track, scoring.from_step));
+      else
+        static_cast<void>(bound->variances(track, steps_at(track, scoring.times_s)));
+    }
+  } catch (const InputError& reason) {
+    say(fmt::format("truebearing: the bound is left out: {}", reason.what()));
+    bound.reset();
+  }
+}
+
+Comparison score(const Study& study, const TrackArguments& options, const TrackerSet& trackers,
+                 std::vector<Recording>& tracks, double epoch_s) {
+  ComparisonOptions comparison_options = study.comparison_options();
+  comparison_options.runs = tracks.size();
+  comparison_options.threads = 1;
+  for (Recording& track : tracks)
+    for (Measurement& measurement : track.measurements) measurement.time_s -= epoch_s;
+  leave_out_unless_told(comparison_options.cramer_rao, tracks, comparison_options.scoring);
+  leave_out_unless_told(comparison_options.angle_bound, tracks, comparison_options.scoring);
+  const LogScenario scenario(tracks);
+  Comparison comparison = compare(trackers, {{options.log, &scenario}}, comparison_options);
+  comparison.study = study.name() + " on " + options.log;
+  for (double& time_s : comparison.time_s) time_s += epoch_s;
+  return comparison;
+}
+
+void report(const Study& study, const TrackArguments& options, const TrackRun& run, const Recording::Counts& rows) {
+  fmt::print("{}: {} measurements, {} missing, {} repeated rows dropped\n\n", options.log, run.contents().measurements,
+             rows.missing, rows.repeated);
+  fmt::print("{}", consistency_table(run.all()));
+  for (const Followed& followed : run.all())
+    if (followed.records == 0)
+      fmt::print("{}: no track began: {}\n", followed.name, why_no_track(study, followed.name, run.contents()));
+  for (const std::string& text : {estimate_table(run.all()), event_table(run.all())})
+    if (!text.empty()) fmt::print("\n{}", text);
+}
+
+void say_epoch(const TrackArguments& options, double epoch_s) {
+  if (epoch_s != 0.0)
+    say(fmt::format("truebearing: {}: begins after all times of the study, which are counted from {:.15g} s",
+                    options.log, epoch_s));
+}
+
+// tracks: what is to be scored; empty where nothing is.
+void finish(const Study& study, const TrackArguments& options, TrackRun& run, const Recording::Counts& rows,
+            std::vector<Recording> tracks) {
+  const bool for_people = !options.only_text_for_programs();
+  if (for_people) report(study, options, run, rows);
+  for (const std::string& line : consistency_warnings(run.all())) say("truebearing: " + line);
+  std::optional<Comparison> comparison;
+  if (!tracks.empty()) comparison = score(study, options, run.trackers(), tracks, run.contents().epoch_s);
+  run.finish();
+  if (comparison && for_people) fmt::print("\n{}", comparison_table(*comparison));
+  if (comparison && !options.json.empty()) write_output(options.json, comparison_json(*comparison));
+}
+
+InputError no_truth(const std::string& log) {
+  return {log, "has no truth to score against", "a log with truth, or no --json"};
+}
+
+void track_step_log(const Study& study, const StepLogScenario& logs, const TrackArguments& options) {
+  std::vector<RecordedTrack> read = logs.read(options.log);
+  if (!options.json.empty() && !read.front().recording.truth_space) throw no_truth(options.log);
+  const std::vector<Measurement>& first = read.front().recording.measurements;
+  TrackRun run(study, options, static_cast<int>(first.front().z.size()));
+  Recording::Counts rows;
+  std::vector<Recording> tracks;
+  for (auto& [number, recording] : read) {
+    if (read.size() > 1 || number != 0) run.begin_track(number);
+    for (const Measurement& measurement : recording.measurements) run.step(measurement);
+    run.end_track(recording.counts);
+    rows.missing += recording.counts.missing;
+    if (recording.truth_space) tracks.push_back(std::move(recording));
+  }
+  finish(study, options, run, rows, std::move(tracks));
+}
+
+void track_snapshots(const Study& study, const TrackArguments& options) {
+  Recording recording = read_snapshot_log(options.log);
+  check_measured(recording.measured, study.scenario(), options.log);
+  if (!options.json.empty() && !recording.truth_space) throw no_truth(options.log);
+  TrackRun run(study, options, static_cast<int>(recording.measured.size()));
+  const double epoch_s = study_epoch_s(study, recording.measurements.front().time_s);
+  say_epoch(options, epoch_s);
+  run.begin_at(epoch_s);
+  for (const Measurement& measurement : recording.measurements) run.step(measurement);
+  const Recording::Counts rows = recording.counts;
+  run.end_track(rows);
+  std::vector<Recording> tracks;
+  if (recording.truth_space) tracks.push_back(std::move(recording));
+  finish(study, options, run, rows, std::move(tracks));
+}
+
+void track_rows(const Study& study, const TrackArguments& options) {
+  RecordingReader reader(options.log);
+  check_measured(reader.measured(), study.scenario(), options.log);
+  if (!options.json.empty() && !reader.truth_space()) throw no_truth(options.log);
+  // Whoever is only given the records needs no scores, and the log has no end that could be waited for.
+  const bool scores = reader.truth_space() && (!options.only_text_for_programs() || !options.json.empty());
+  TrackRun run(study, options, static_cast<int>(reader.measured().size()));
+  Recording recording;
+  for (bool first = true; reader.next(); first = false) {
+    if (first) {
+      const double epoch_s = study_epoch_s(study, reader.measurement().time_s);
+      say_epoch(options, epoch_s);
+      run.begin_at(epoch_s);
+    }
+    run.step(reader.measurement());
+    if (scores) reader.append_to(recording);
+    if (reader.may_wait()) run.flush();
+  }
+  run.end_track(reader.counts());
+  std::vector<Recording> tracks;
+  if (scores) reader.complete(tracks.emplace_back(std::move(recording)));
+  finish(study, options, run, reader.counts(), std::move(tracks));
 }
 
 void track(const TrackArguments& options) {
   const Study study = Study::load(options.study);
-  const std::vector<RecordedTrack> tracks = read_log(study, options.log);
-  TrackerSet trackers = study.make_tracker_set();
-
-  TrackWriter writer(trackers);
-  const auto entries = static_cast<std::size_t>(trackers.size());
-  std::vector<InnovationConsistency> consistency(entries);
-  std::vector<TrackerCounts> counts(entries);
-  EventLog events;
-  Recording::Counts rows;
-  std::size_t measurements = 0;
-  for (const auto& [number, recording] : tracks) {
-    trackers.reset();
-    for (const Measurement& measurement : recording.measurements) {
-      trackers.step(measurement);
-      for (int i = 0; i < trackers.size(); ++i)
-        for (StepRecord record : trackers.records(i)) {
-          record.track += number;  // those of a step log are numbered 0 while they run
-          consistency[static_cast<std::size_t>(i)].add(record);
-          writer.add(trackers.name(i), record);
-        }
-    }
-    for (int i = 0; i < trackers.size(); ++i) {
-      add(counts[static_cast<std::size_t>(i)], trackers.counts(i));
-      events.add(trackers.name(i), trackers.events(i));
-    }
-    measurements += recording.measurements.size();
-    rows.missing += recording.counts.missing;
-    rows.repeated += recording.counts.repeated;
-  }
-  const bool to_stdout = options.output == "-" || options.json == "-" || options.events == "-";
-  if (!to_stdout) {
-    fmt::print("{}: {} measurements, {} missing, {} repeated rows dropped\n\n", options.log, measurements, rows.missing,
-               rows.repeated);
-    print_consistency(trackers, consistency, counts);
-    if (!events.empty()) fmt::print("\n{}", events.table());
-  }
-  if (tracks.front().recording.truth_space) {
-    ComparisonOptions comparison_options = study.comparison_options();
-    comparison_options.runs = tracks.size();
-    comparison_options.threads = 1;
-    const LogScenario scenario(tracks);
-    Comparison comparison = compare(trackers, {{options.log, &scenario}}, comparison_options);
-    comparison.study = study.name() + " on " + options.log;
-    if (!to_stdout) fmt::print("\n{}", comparison_table(comparison));
-    if (!options.json.empty()) write_output(options.json, comparison_json(comparison));
-  } else if (!options.json.empty()) {
-    throw InputError(options.log, "has no truth to score against", "a log with truth, or no --json");
-  }
-  if (!options.output.empty()) write_output(options.output, writer.text(tracks.size() > 1));
-  if (!options.events.empty()) write_output(options.events, events.csv());
+  std::vector<std::filesystem::path> inputs = study.input_files();
+  inputs.emplace_back(options.log);
+  check_outputs(options.outputs(), inputs);
+  if (const auto* logs = dynamic_cast<const StepLogScenario*>(&study.scenario()))
+    return track_step_log(study, *logs, options);
+  if (is_snapshot_log(options.log)) return track_snapshots(study, options);
+  if (is_geographic_track(options.log))
+    throw InputError(
+        options.log, "holds recorded positions, which are no measurements",
+        fmt::format("`truebearing compare {} --truth {}`, which measures them", options.study, options.log));
+  track_rows(study, options);
 }
 
 }  // namespace

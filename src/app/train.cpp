@@ -1,8 +1,11 @@
 // truebearing train STUDY.toml [-o MODEL]: teacher signals -> network -> model file.
 #include <cstdint>
+#include <filesystem>
 #include <fmt/format.h>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "app/output.hpp"
 #include "app/subcommands.hpp"
@@ -26,15 +29,22 @@ void train(const TrainArguments& options) {
   for (const std::string& name : options.trackers)
     if (!study.tracker(name).correction)
       throw InputError(options.study, "\"" + name + "\" is not a corrected tracker", "trackers of kind \"corrected\"");
+  const std::vector<std::string> names = corrected_trackers(study, options.trackers);
+  if (names.empty()) throw InputError(options.study, "has no tracker of kind \"corrected\"");
+  if (!options.output.empty() && names.size() > 1)
+    throw InputError("-o", fmt::format("names one file for {} models", names.size()), "--tracker NAME beside it");
+  std::vector<std::string> outputs;
+  std::vector<std::filesystem::path> own;
+  for (const std::string& name : names) {
+    own.push_back(study.tracker(name).correction->model);
+    outputs.push_back(options.output.empty() ? own.back().string() : options.output);
+  }
+  check_products(study, outputs, own);
   const CorrectionModels models =
-      train_study(study, options.trackers, {options.seed.value_or(study.seed()), options.threads, options.quiet});
-  if (models.empty()) throw InputError(options.study, "has no tracker of kind \"corrected\"");
-  if (!options.output.empty() && models.size() > 1)
-    throw InputError("-o", fmt::format("names one file for {} models", models.size()), "--tracker NAME beside it");
-  for (const auto& [name, model] : models) {
-    const std::string path = options.output.empty() ? study.tracker(name).correction->model.string() : options.output;
-    write_output(path, model_text(*model));
-    if (path != "-") fmt::print("written: {}\n", path);
+      train_study(study, names, {options.seed.value_or(study.seed()), options.threads, options.quiet});
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    write_output(outputs[i], model_text(*models.at(names[i])));
+    if (!is_standard_output(outputs[i])) fmt::print("written: {}\n", outputs[i]);
   }
 }
 

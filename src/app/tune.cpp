@@ -22,12 +22,13 @@ struct TuneArguments {
 void tune(const TuneArguments& options) {
   Study study = Study::load(options.study);
   const std::string output = options.output.empty() ? study.parameters_path().string() : options.output;
+  if (!has_tuned_trackers(study)) throw InputError(options.study, "has no tracker with a key `tune`");
+  if (output.empty()) throw InputError(options.study, "has no key `parameters`", "that key, or -o FILE");
+  check_products(study, {output}, {study.parameters_path()});
   const ParametersFile parameters =
       tune_study(study, {options.seed.value_or(study.seed()), options.threads, options.quiet});
-  if (parameters.trackers.empty()) throw InputError(options.study, "has no tracker with a key `tune`");
-  if (output.empty()) throw InputError(options.study, "has no key `parameters`", "that key, or -o FILE");
   write_output(output, parameters_text(parameters));
-  if (output != "-") fmt::print("written: {}\n", output);
+  if (!is_standard_output(output)) fmt::print("written: {}\n", output);
 }
 
 }  // namespace

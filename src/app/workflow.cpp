@@ -1,5 +1,6 @@
 #include "app/workflow.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -36,7 +37,36 @@ std::string validation_scores(const Study& study, const std::string& name, const
   return text;
 }
 
+bool is_tuned(const TrackerSpec& spec) {
+  return !spec.tune.empty() && !spec.correction;
+}
+
 }  // namespace
+
+bool has_tuned_trackers(const Study& study) {
+  return std::any_of(study.trackers().begin(), study.trackers().end(), is_tuned);
+}
+
+std::vector<std::string> corrected_trackers(const Study& study, const std::vector<std::string>& names) {
+  std::vector<std::string> corrected;
+  for (const TrackerSpec& spec : study.trackers())
+    if (spec.correction && (names.empty() || std::find(names.begin(), names.end(), spec.name) != names.end()))
+      corrected.push_back(spec.name);
+  return corrected;
+}
+
+void check_products(const Study& study, const std::vector<std::string>& outputs,
+                    const std::vector<std::filesystem::path>& replaced) {
+  std::vector<std::filesystem::path> inputs;
+  for (std::filesystem::path& input : study.input_files()) {
+    std::error_code unknown;
+    const auto is_input = [&](const std::filesystem::path& path) {
+      return std::filesystem::equivalent(path, input, unknown);
+    };
+    if (std::none_of(replaced.begin(), replaced.end(), is_input)) inputs.push_back(std::move(input));
+  }
+  check_outputs(outputs, inputs);
+}
 
 ParametersFile tune_study(const Study& study, const WorkflowOptions& options) {
   ParametersFile parameters;
@@ -44,22 +74,24 @@ ParametersFile tune_study(const Study& study, const WorkflowOptions& options) {
                            {"seed", fmt::format("{}", options.seed)},
                            {"tuning_runs", fmt::format("{}", study.tuning_runs())}};
   for (const TrackerSpec& spec : study.trackers()) {
-    if (spec.tune.empty() || spec.correction) continue;
-    ProgressLine progress("tune " + spec.name, options.quiet);
-    TuneOptions tune_options;
-    tune_options.seed = options.seed;
-    tune_options.threads = options.threads;
-    tune_options.progress = [&](int done, int most, double) {
-      progress.show(static_cast<std::size_t>(done), static_cast<std::size_t>(most));
-    };
+    if (!is_tuned(spec)) continue;
     TuneReport report;
-    parameters.trackers[spec.name] = tune_tracker(study, spec.name, tune_options, &report);
+    {
+      ProgressLine progress("tune " + spec.name, options.quiet);
+      TuneOptions tune_options;
+      tune_options.seed = options.seed;
+      tune_options.threads = options.threads;
+      tune_options.progress = [&](int done, int most, double) {
+        progress.show(static_cast<std::size_t>(done), static_cast<std::size_t>(most));
+      };
+      parameters.trackers[spec.name] = tune_tracker(study, spec.name, tune_options, &report);
+    }
     if (!options.quiet)
-      fmt::print(stderr, "tuned {}: RMSE times {:.4f} (geometric mean over the scored quantities), {} evaluations\n",
-                 spec.name,
-                 std::exp((report.cost_after - report.cost_before) /
-                          static_cast<double>(study.scenario().truth_space().quantities.size())),
-                 report.evaluations);
+      say(fmt::format("tuned {}: RMSE times {:.4f} (geometric mean over the scored quantities), {} evaluations",
+                      spec.name,
+                      std::exp((report.cost_after - report.cost_before) /
+                               static_cast<double>(study.scenario().truth_space().quantities.size())),
+                      report.evaluations));
   }
   return parameters;
 }
@@ -67,26 +99,24 @@ ParametersFile tune_study(const Study& study, const WorkflowOptions& options) {
 CorrectionModels train_study(const Study& study, const std::vector<std::string>& names,
                              const WorkflowOptions& options) {
   CorrectionModels models;
-  for (const TrackerSpec& spec : study.trackers()) {
-    if (!spec.correction) continue;
-    if (!names.empty() && std::find(names.begin(), names.end(), spec.name) == names.end()) continue;
+  for (const std::string& name : corrected_trackers(study, names)) {
     TrainReport report;
     CorrectionModel model;
     {
-      ProgressLine teacher("teach " + spec.name, options.quiet);
-      ProgressLine training("train " + spec.name, options.quiet);
+      ProgressLine teacher("teach " + name, options.quiet);
+      ProgressLine training("train " + name, options.quiet);
       TrainOptions train_options{options.seed, options.threads, teacher.callback(), [&](int done, int total, double) {
                                    training.show(static_cast<std::size_t>(done), static_cast<std::size_t>(total));
                                  }};
-      model = train_correction(study, spec.name, train_options, &report);
+      model = train_correction(study, name, train_options, &report);
     }
-    CorrectionModels trained{{spec.name, std::make_shared<const CorrectionModel>(model)}};
+    CorrectionModels trained{{name, std::make_shared<const CorrectionModel>(model)}};
     model.provenance["validation"] =
-        fmt::format("{} runs: {}", kValidationRuns, validation_scores(study, spec.name, trained, options));
+        fmt::format("{} runs: {}", kValidationRuns, validation_scores(study, name, trained, options));
     if (!options.quiet)
-      fmt::print(stderr, "trained {}: {} rules on {} steps in {:.2f} s; validation, {}\n", spec.name,
-                 model.network.rules(), report.rows, report.training_seconds, model.provenance["validation"]);
-    models[spec.name] = std::make_shared<const CorrectionModel>(std::move(model));
+      say(fmt::format("trained {}: {} rules on {} steps in {:.2f} s; validation, {}", name, model.network.rules(),
+                      report.rows, report.training_seconds, model.provenance["validation"]));
+    models[name] = std::make_shared<const CorrectionModel>(std::move(model));
   }
   return models;
 }

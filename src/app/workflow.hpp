@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,16 @@ struct WorkflowOptions {
   int threads = 0;
   bool quiet = false;
 };
+
+/// Whether the study has a tracker with something to tune.
+bool has_tuned_trackers(const Study& study);
+/// The corrected trackers of those names; all of them where there are none.
+std::vector<std::string> corrected_trackers(const Study& study, const std::vector<std::string>& names);
+
+/// check_outputs() for what is made from a study and replaces the files that it names for it: these do not count as
+/// inputs.
+void check_products(const Study& study, const std::vector<std::string>& outputs,
+                    const std::vector<std::filesystem::path>& replaced);
 
 /// Fits every tracker of the study that has something to tune. Says on standard error what it found, unless quiet.
 ParametersFile tune_study(const Study& study, const WorkflowOptions& options);

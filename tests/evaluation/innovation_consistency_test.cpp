@@ -36,7 +36,7 @@ TEST(InnovationConsistency, ConsistentTrackerIsInsideItsIntervals) {
   EXPECT_GT(c.nis_ratio(), c.nis_ratio_low());
   EXPECT_LT(c.nis_ratio(), c.nis_ratio_high());
   EXPECT_LT(std::abs(c.correlation()), c.correlation_limit());
-  EXPECT_FALSE(c.is_implausible_at_start());
+  EXPECT_FALSE(c.is_far_too_large_at_start());
 }
 
 TEST(InnovationConsistency, TrackerThatBelievesTooLittleNoiseIsCaught) {
@@ -55,16 +55,16 @@ TEST(InnovationConsistency, TrackerThatDoesNotFollowIsNotWhite) {
 }
 
 TEST(InnovationConsistency, WrongUnitIsImplausible) {
-  EXPECT_TRUE(consistency({}, 1.0, 1000.0, 20).is_implausible_at_start()) << "metres where kilometres were meant";
-  EXPECT_TRUE(consistency({}, 1.0, 1e-3, 20).is_implausible_at_start()) << "kilometres where metres were meant";
-  EXPECT_FALSE(consistency({}, 2.0, 1.0, 20).is_implausible_at_start()) << "a filter twice too sure is none";
-  EXPECT_FALSE(consistency({}, 0.5, 1.0, 20).is_implausible_at_start());
+  EXPECT_TRUE(consistency({}, 1.0, 1000.0, 20).is_far_too_large_at_start()) << "metres where kilometres were meant";
+  EXPECT_TRUE(consistency({}, 1.0, 1e-3, 20).is_far_too_small()) << "kilometres where metres were meant";
+  EXPECT_FALSE(consistency({}, 2.0, 1.0, 20).is_far_too_large_at_start()) << "a filter twice too sure is none";
+  EXPECT_FALSE(consistency({}, 0.5, 1.0, 20).is_far_too_small());
 }
 
 TEST(InnovationConsistency, WrongUnitIsImplausibleAlsoBehindAGate) {
   RadarFilter gated;
   gated.options.gate_nis = 6.6;
-  EXPECT_TRUE(consistency(gated, 1.0, 1000.0, 20).is_implausible_at_start());
+  EXPECT_TRUE(consistency(gated, 1.0, 1000.0, 20).is_far_too_large_at_start());
 }
 
 TEST(InnovationConsistency, OfNothingIsNaN) {
@@ -72,7 +72,7 @@ TEST(InnovationConsistency, OfNothingIsNaN) {
   EXPECT_EQ(c.steps(), 0);
   EXPECT_TRUE(std::isnan(c.nis_ratio()));
   EXPECT_TRUE(std::isnan(c.correlation()));
-  EXPECT_FALSE(c.is_implausible_at_start());
+  EXPECT_FALSE(c.is_far_too_large_at_start());
 }
 
 StepRecord record_of(int track, double nu) {
@@ -103,9 +103,26 @@ TEST(InnovationConsistency, WhitenessIsThatOfEachTrack) {
 TEST(InnovationConsistency, WrongUnitIsImplausibleInTheFirstStepsOfEachTrack) {
   InnovationConsistency c;
   for (int k = 0; k < 100; ++k) c.add(record_of(0, 1.0));
-  EXPECT_FALSE(c.is_implausible_at_start());
+  EXPECT_FALSE(c.is_far_too_large_at_start());
   for (int k = 0; k < 100; ++k) c.add(record_of(1, 1000.0));
-  EXPECT_TRUE(c.is_implausible_at_start());
+  EXPECT_TRUE(c.is_far_too_large_at_start());
+}
+
+TEST(InnovationConsistency, SensorThatStandsStillIsCaughtWhereverItBegins) {
+  RandomStream random({.seed = 8}, StreamId::test);
+  InnovationConsistency c;
+  for (int k = 0; k < 500; ++k) c.add(record_of(0, random.normal()));
+  EXPECT_FALSE(c.is_far_too_small());
+  for (int k = 0; k < 20; ++k) c.add(record_of(0, 1e-3 * random.normal()));
+  EXPECT_TRUE(c.is_far_too_small());
+  EXPECT_FALSE(c.is_far_too_large_at_start());
+}
+
+TEST(InnovationConsistency, OfInnovationsThatAreAllZeroThereIsNoCorrelation) {
+  InnovationConsistency c;
+  for (int k = 0; k < 20; ++k) c.add(record_of(0, 0.0));
+  EXPECT_TRUE(std::isnan(c.correlation()));
+  EXPECT_TRUE(c.is_far_too_small());
 }
 
 TEST(InnovationConsistency, CoastedStepsDoNotCount) {

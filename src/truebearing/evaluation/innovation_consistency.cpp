@@ -8,6 +8,11 @@
 namespace truebearing {
 namespace {
 
+// Metres taken for kilometres, or degrees for radians, give thousands or thousandths; a badly chosen prior gives tens.
+constexpr double kFarOff = 100.0;
+// A NIS over its degrees of freedom that is smaller than this comes once in a hundred steps by chance.
+constexpr double kStill = 1e-4;
+
 // A part of z may be missing.
 double freedom_of(const Innovation& innovation) {
   const bool told = innovation.z.size() == innovation.nu.size();
@@ -28,6 +33,8 @@ void InnovationConsistency::add(const StepRecord& record) {
     first_nis_sum_ += innovation.nis;
   }
   if (record.status != StepStatus::ok) return;
+  track.still_steps = innovation.nis < kStill * freedom ? track.still_steps + 1 : 0;
+  stood_still_ |= track.still_steps >= kFirstSteps;
   ++steps_;
   freedom_ += freedom;
   nis_sum_ += innovation.nis;
@@ -59,13 +66,14 @@ double InnovationConsistency::correlation_limit() const {
                     : std::numeric_limits<double>::quiet_NaN();
 }
 
-bool InnovationConsistency::is_implausible_at_start() const {
-  // A badly chosen prior gives tens; metres taken for kilometres, or degrees for radians, give thousands, or
-  // thousandths.
-  constexpr double kFactor = 100.0;
-  if (first_steps_ == 0) return false;
-  if (first_nis_sum_ > kFactor * chi_square_quantile(0.975, first_freedom_)) return true;
-  return first_steps_ >= kFirstSteps && first_nis_sum_ < chi_square_quantile(0.025, first_freedom_) / kFactor;
+bool InnovationConsistency::is_far_too_large_at_start() const {
+  return first_steps_ > 0 && first_nis_sum_ > kFarOff * chi_square_quantile(0.975, first_freedom_);
+}
+
+bool InnovationConsistency::is_far_too_small() const {
+  const bool at_start =
+      first_steps_ >= kFirstSteps && first_nis_sum_ < chi_square_quantile(0.025, first_freedom_) / kFarOff;
+  return at_start || stood_still_;
 }
 
 }  // namespace truebearing

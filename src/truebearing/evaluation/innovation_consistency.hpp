@@ -24,15 +24,19 @@ class InnovationConsistency {
   /// they are white.
   double correlation() const;
   double correlation_limit() const;
-  /// True where the NIS of the tracks' first steps, used or gated, is so large or so small that a wrong unit or a wrong
-  /// column is likelier than chance.
-  bool is_implausible_at_start() const;
+  /// True where the NIS of the tracks' first steps, used or gated, is so large that a wrong unit or a wrong column is
+  /// likelier than chance.
+  bool is_far_too_large_at_start() const;
+  /// True where it is so small there, or anywhere in as many steps on end, that measurements that do not move, or are
+  /// far better than the tracker believes, are likelier than chance.
+  bool is_far_too_small() const;
 
  private:
   static constexpr int kFirstSteps = 10;  // of each track
 
   struct Track {
     int first_steps = 0;
+    int still_steps = 0;  // on end
     std::optional<double> last_e;
   };
   std::map<int, Track> tracks_;
@@ -42,6 +46,7 @@ class InnovationConsistency {
   int first_steps_ = 0;
   double first_freedom_ = 0.0;
   double first_nis_sum_ = 0.0;
+  bool stood_still_ = false;
   double product_sum_ = 0.0;
   double square_sum_ = 0.0;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <toml++/toml.h>
 
+#include "truebearing/io/file.hpp"
 #include "truebearing/study/configuration_text.hpp"
 #include "truebearing/tracker/step_log_scenario.hpp"
 
@@ -24,6 +25,15 @@ std::vector<std::string> joined(std::vector<std::string> first, const std::vecto
   for (const std::string& name : second)
     if (std::find(first.begin(), first.end(), name) == first.end()) first.push_back(name);
   return first;
+}
+
+// Texts in a table may name files, which lie relative to its own.
+void add_texts(const toml::node& node, const std::filesystem::path& folder, std::vector<std::filesystem::path>& files) {
+  if (const auto* text = node.as_string()) files.push_back(folder / text->get());
+  if (const auto* array = node.as_array())
+    for (const toml::node& element : *array) add_texts(element, folder, files);
+  if (const auto* table = node.as_table())
+    for (const auto& [key, value] : *table) add_texts(value, folder, files);
 }
 
 }  // namespace
@@ -84,7 +94,26 @@ void Study::read(const SharedTable& table, const std::vector<std::string>& order
     scoring_ = read_study_scoring(std::move(*scoring), names_of(trackers_), scenario_->truth_space(), compared);
   }
   reader.finish();
+  files_ = {path_, scenario_file_};
+  add_texts(*table, path_.parent_path(), files_);
+  add_texts(*scenario_table_, std::filesystem::path(scenario_file_).parent_path(), files_);
   check_trackers();
+}
+
+std::vector<std::filesystem::path> Study::input_files() const {
+  std::vector<std::filesystem::path> files;
+  std::error_code unknown;
+  for (const std::filesystem::path& pattern : files_) {
+    if (pattern.filename().string().find('*') == std::string::npos) {
+      if (std::filesystem::exists(pattern, unknown)) files.push_back(pattern);
+      continue;
+    }
+    try {
+      for (std::filesystem::path& file : matching_files(pattern)) files.push_back(std::move(file));
+    } catch (const InputError&) {  // nothing is there to be destroyed
+    }
+  }
+  return files;
 }
 
 std::vector<NamedScenario> Study::evaluation_scenarios() const {

@@ -29,6 +29,8 @@ class Study {
 
   const std::string& name() const { return name_; }
   const std::filesystem::path& path() const { return path_; }
+  /// Its own file, and every file that is there of those that it or its scenario names: what an output must not destroy.
+  std::vector<std::filesystem::path> input_files() const;
   /// What the trackers are tuned and trained on.
   const Scenario& scenario() const { return *scenario_; }
   /// One that is made of it or of another, as its sets and what corrections are taught on may be. Throws InputError.
@@ -83,6 +85,7 @@ class Study {
   void check_replay(const TrackerSpec& spec, const Tracker& tracker);
 
   std::filesystem::path path_;
+  std::vector<std::filesystem::path> files_;  // that it names, as patterns
   std::string name_;
   std::unique_ptr<Scenario> scenario_;
   SharedTable scenario_table_;

@@ -1,0 +1,30 @@
+// What `truebearing track` says of the trackers that it ran, for people.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "truebearing/evaluation/innovation_consistency.hpp"
+#include "truebearing/tracker/tracker.hpp"
+
+namespace truebearing {
+
+/// One tracker on the log.
+struct Followed {
+  std::string name;
+  long records = 0;
+  InnovationConsistency innovations;
+  TrackerCounts counts;
+  std::vector<TrackEvent> events;  ///< times are those of the log
+  std::vector<StepRecord> last;    ///< of the last step; empty where the track had ended, or none began
+};
+
+/// Steps, NIS and whiteness with what is outside its interval marked, and what trackers met.
+std::string consistency_table(const std::vector<Followed>& all);
+/// Lines about innovations that are far from the size that their tracker claims.
+std::vector<std::string> consistency_warnings(const std::vector<Followed>& all);
+/// The state with its standard deviations at the end, track by track.
+std::string estimate_table(const std::vector<Followed>& all);
+std::string event_table(const std::vector<Followed>& all);
+
+}  // namespace truebearing

@@ -1,0 +1,232 @@
+// `truebearing track` on logs of any length, on streams, and what it says to people.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <poll.h>
+#include <sstream>
+#include <sys/resource.h>
+
+#include "tests/app/program.hpp"
+#include "truebearing/tracker/step_log.hpp"
+
+namespace truebearing::track_test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using testing::Outcome;
+using testing::replaced;
+using testing::run;
+using testing::TemporaryFolder;
+
+const std::string kLineStudy = R"(name = "line"
+[scenario]
+kind = "line"
+period_s = 1.0
+steps = 100
+target = { position_m = 0.0, velocity_mps = 100.0 }
+sensor = { position_sigma_m = 50.0 }
+[trackers.plain]
+kind = "kalman"
+motion = { model = "constant_velocity", noise = "discrete", sigma_a_mps2 = 1.0 }
+measurement = { model = "position", sigma_m = 50.0 }
+start = { kind = "two_point" }
+)";
+
+// 100 m/s, with noise of about 50 m that repeats.
+std::string row(int k, double from_s = 0.0) {
+  constexpr std::array kNoise_m{31.0, -62.0, 12.0, 55.0, -41.0, -8.0, 70.0, -53.0, 3.0, -19.0, 44.0};
+  return fmt::format("{},{}\n", from_s + k, 100.0 * k + kNoise_m[static_cast<std::size_t>(k) % kNoise_m.size()]);
+}
+
+std::string log_of(int rows, double from_s = 0.0) {
+  std::string text = "time_s,position_m\n";
+  for (int k = 1; k <= rows; ++k) text += row(k, from_s);
+  return text;
+}
+
+// The most memory that it had, in kB.
+long peak_kB(const TemporaryFolder& folder, const std::string& arguments) {
+  const TemporaryFolder outputs;
+  const pid_t child = testing::start(folder, arguments, outputs.path());
+  int status = 0;
+  struct rusage used;
+  ::wait4(child, &status, 0, &used);
+  EXPECT_EQ(status, 0) << outputs.read("err.txt");
+  return used.ru_maxrss;
+}
+
+TEST(Track, MemoryDoesNotGrowWithTheLog) {
+  const TemporaryFolder folder;
+  folder.write("line.toml", kLineStudy);
+  folder.write("short.csv", log_of(100));
+  folder.write("long.csv", log_of(60000));
+  constexpr long kSmall_kB = 8000;  // all records would be 240 MB
+  for (const char* output : {"", " -o steps.csv"}) {
+    const long least_kB = peak_kB(folder, std::string("track line.toml short.csv") + output);
+    EXPECT_LT(peak_kB(folder, std::string("track line.toml long.csv") + output), least_kB + kSmall_kB) << output;
+  }
+  EXPECT_EQ(read_step_log(folder.path() / "steps.csv").records.size(), 59999u);
+}
+
+TEST(Track, AnswersARowOfAStreamAsItComes) {
+  const TemporaryFolder folder;
+  folder.write("line.toml", kLineStudy);
+  const std::string log = (folder.path() / "log").string(), steps = (folder.path() / "steps").string();
+  ASSERT_EQ(::mkfifo(log.c_str(), 0600), 0);
+  ASSERT_EQ(::mkfifo(steps.c_str(), 0600), 0);
+  for (const char* arguments : {"track line.toml - -o - < log > steps", "track line.toml log -o steps"}) {
+    const TemporaryFolder outputs;
+    const pid_t child = testing::start(folder, arguments, outputs.path());
+    std::FILE* to = std::fopen(log.c_str(), "w");
+    const int from = ::open(steps.c_str(), O_RDONLY);
+    const auto answer = [&] {  // what comes within ten seconds
+      struct pollfd waiting {
+        from, POLLIN, 0
+      };
+      std::array<char, 4096> text;
+      if (::poll(&waiting, 1, 10000) != 1) return std::string("nothing");
+      return std::string(text.data(), static_cast<std::size_t>(std::max<ssize_t>(::read(from, text.data(), 4096), 0)));
+    };
+    std::fputs("time_s,position_m,truth_position_m\n1,100,100\n2,200,200\n", to);
+    std::fflush(to);
+    EXPECT_THAT(answer(), AllOf(HasSubstr("time_s,tracker"), HasSubstr("\n2,plain,0,ok,200,"))) << arguments;
+    std::fputs("3,300,300\n", to);
+    std::fflush(to);
+    EXPECT_THAT(answer(), HasSubstr("3,plain,0,ok,300,")) << arguments;
+    std::fclose(to);
+    EXPECT_EQ(testing::wait_for(child), 0) << outputs.read("err.txt");
+    ::close(from);
+  }
+}
+
+TEST(Track, SaysWhereTheTargetWasLast) {
+  const TemporaryFolder folder;
+  folder.write("line.toml", kLineStudy);
+  folder.write("log.csv", log_of(50));
+  const Outcome outcome = run(folder, "track line.toml log.csv");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("last estimate"), HasSubstr("position m"), HasSubstr("velocity m/s"),
+                                 ::testing::ContainsRegex("plain +50 +(49|50)[0-9][0-9] \\+- ")));
+}
+
+TEST(Track, MarksWhatIsInconsistent) {
+  const TemporaryFolder folder;
+  folder.write("line.toml", kLineStudy);
+  folder.write("sure.toml", replaced(kLineStudy, "sigma_m = 50.0 }\nstart", "sigma_m = 10.0 }\nstart"));
+  folder.write("log.csv", log_of(200));
+  EXPECT_THAT(run(folder, "track sure.toml log.csv").out, ::testing::ContainsRegex("\\([0-9.]+-[0-9.]+\\) \\*"));
+}
+
+TEST(Track, StuckSensorIsNotTakenForAnotherUnit) {
+  const TemporaryFolder folder;
+  folder.write("line.toml", kLineStudy);
+  std::string stuck = "time_s,position_m\n", in_the_end = log_of(100);
+  for (int k = 1; k <= 60; ++k) stuck += fmt::format("{},1234.5\n", k);
+  for (int k = 101; k <= 400; ++k) in_the_end += fmt::format("{},1234.5\n", k);
+  folder.write("stuck.csv", stuck);
+  folder.write("end.csv", in_the_end);
+  folder.write("unit.csv", "time_s,position_m\n1,0\n2,1e5\n3,7e5\n4,2e4\n5,9e6\n6,3e4\n");
+  for (const char* log : {"stuck.csv", "end.csv"}) {
+    const Outcome outcome = run(folder, std::string("track line.toml ") + log);
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr("stuck"), HasSubstr("smoothed"), HasSubstr("sigma too large"))) << log;
+    EXPECT_THAT(outcome.out + outcome.err, AllOf(Not(HasSubstr("another unit")), Not(HasSubstr("nan")))) << log;
+  }
+  EXPECT_THAT(run(folder, "track line.toml unit.csv").err, HasSubstr("another unit"));
+}
+
+TEST(Track, ClockOfTheDayIsThatOfTheStudyFromTheFirstRowOn) {
+  const TemporaryFolder folder;
+  folder.write("line.toml",
+               replaced(kLineStudy, "kind = \"two_point\"", "kind = \"prior\", x = [0.0, 0.0], variance = [1e4, 1e4]"));
+  folder.write("log.csv", log_of(60));
+  folder.write("late.csv", log_of(60, 1.7e9));
+  folder.write("cut.csv", replaced(log_of(60), row(1), ""));
+  ASSERT_EQ(run(folder, "track line.toml log.csv -o steps.csv").status, 0);
+  const Outcome outcome = run(folder, "track line.toml late.csv -o late_steps.csv");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("counted from 1700000000 s"));
+  EXPECT_THAT(outcome.out, HasSubstr("1700000060"));
+  EXPECT_EQ(run(folder, "track line.toml cut.csv").err, "") << "it begins within the study's times";
+  const StepLog early = read_step_log(folder.path() / "steps.csv"),
+                late = read_step_log(folder.path() / "late_steps.csv");
+  ASSERT_EQ(early.records.size(), late.records.size());
+  for (std::size_t k = 0; k < early.records.size(); ++k) {
+    EXPECT_EQ(late.records[k].time_s, early.records[k].time_s + 1.7e9);
+    EXPECT_EQ(late.records[k].x, early.records[k].x);
+  }
+}
+
+// The study of a passive sonar on a log of its own with another clock: batches, events and scores are the same.
+TEST(Track, BatchesAreSolvedInALogOfAnotherClock) {
+  const TemporaryFolder folder;
+  const std::string data = std::string(TRUEBEARING_SOURCE_DIR) + "/data/";
+  ASSERT_EQ(run(folder, "simulate " + data + "scenarios/passive_sonar_b.toml -o logs").status, 0);
+  std::istringstream rows(folder.read("logs/run_0000.csv"));
+  std::string line, late;
+  for (bool header = true; std::getline(rows, line); header = false) {
+    const std::size_t comma = line.find(',');
+    late += header ? line : fmt::format("{}{}", std::stod(line.substr(0, comma)) + 1.7e9, line.substr(comma));
+    late += '\n';
+  }
+  folder.write("late.csv", late);
+  const std::string track = "track " + data + "studies/passive_sonar_turn.toml ";
+  const Outcome early = run(folder, track + "logs/run_0000.csv --json early.json --events early.csv");
+  const Outcome shifted = run(folder, track + "late.csv --json late.json");
+  EXPECT_EQ(shifted.status, 0) << shifted.err;
+  EXPECT_THAT(early.out, HasSubstr("range_known"));
+  EXPECT_THAT(shifted.out, AllOf(HasSubstr("range_known"), HasSubstr(" 170000"), Not(HasSubstr("1.7e+09"))));
+  using nlohmann::json;
+  const json of_early = json::parse(folder.read("early.json")), of_late = json::parse(folder.read("late.json"));
+  EXPECT_EQ(of_late["trackers"]["imm"]["metrics"], of_early["trackers"]["imm"]["metrics"]);
+  EXPECT_EQ(of_late["trackers"]["imm"]["series"]["time_s"][0].get<double>(),
+            of_early["trackers"]["imm"]["series"]["time_s"][0].get<double>() + 1.7e9);
+}
+
+TEST(Track, SaysWhyNoTrackBegan) {
+  const TemporaryFolder folder;
+  folder.write("line.toml", kLineStudy);
+  folder.write("one.csv", "time_s,position_m\n1,100\n2,\n");
+  folder.write("none.csv", "time_s,position_m\n1,\n2,\n");
+  EXPECT_THAT(run(folder, "track line.toml one.csv").out,
+              HasSubstr("no track began: its start takes two measurements"));
+  EXPECT_THAT(run(folder, "track line.toml none.csv").out,
+              HasSubstr("no track began: the log has no usable measurement"));
+  std::string bearings = "time_s,bearing_deg,bearing_sigma_deg,sensor_east_m,sensor_north_m\n";
+  for (int k = 0; k < 30; ++k) bearings += fmt::format("{},{},1,{},0\n", 4 * k, 40.0 + k, 20 * k);
+  folder.write("bearings.csv", bearings);
+  const std::string studies = std::string(TRUEBEARING_SOURCE_DIR) + "/data/studies/";
+  const Outcome family = run(folder, "track " + studies + "bearings_only_family.toml bearings.csv");
+  EXPECT_EQ(family.status, 0) << family.err;
+  EXPECT_THAT(family.out, AllOf(HasSubstr("nfnn: no track began"), HasSubstr("guess_range_m")));
+  EXPECT_THAT(run(folder, "track " + studies + "bearings_only_observable.toml bearings.csv").out,
+              HasSubstr("it waits until 1000 s, and the log ends at 116 s"));
+}
+
+TEST(Track, BoundThatALogCannotHaveIsLeftOut) {
+  const TemporaryFolder folder;
+  const std::string data = std::string(TRUEBEARING_SOURCE_DIR) + "/data/";
+  ASSERT_EQ(run(folder, "simulate " + data + "scenarios/array_a_10db.toml -o logs").status, 0);
+  const Outcome outcome = run(folder, "track " + data + "studies/array_a_10db.toml logs/run_0000.h5 -o steps.csv");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("the bound is left out"), Not(HasSubstr("another unit"))));
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("angle deg"), HasSubstr("clean mse")));
+  EXPECT_GT(read_step_log(folder.path() / "steps.csv", "joint").records.size(), 300u);
+}
+
+TEST(Track, CorrectedTrackerIsNotShownAsIdle) {
+  const TemporaryFolder folder;
+  const std::string data = std::string(TRUEBEARING_SOURCE_DIR) + "/data/";
+  ASSERT_EQ(run(folder, "simulate " + data + "scenarios/manoeuvre_2d.toml -o logs").status, 0);
+  const Outcome outcome = run(folder, "track " + data + "studies/manoeuvre_2d.toml logs/run_0000.csv");
+  EXPECT_THAT(outcome.out, AllOf(::testing::ContainsRegex("\nnfnn +119 +- "), HasSubstr("as corrections")));
+}
+
+}  // namespace
+}  // namespace truebearing::track_test

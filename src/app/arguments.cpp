@@ -57,6 +57,11 @@ Argument Argument::positive() const {
   return *this;
 }
 
+Argument Argument::non_negative() const {
+  option_->check(CLI::NonNegativeNumber);
+  return *this;
+}
+
 Argument Argument::needs(const Argument& other) const {
   option_->needs(other.option_);
   return *this;
@@ -91,7 +96,6 @@ template Argument Subcommand::argument(const std::string&, std::vector<std::stri
 template Argument Subcommand::argument(const std::string&, int&, const std::string&) const;
 template Argument Subcommand::argument(const std::string&, double&, const std::string&) const;
 template Argument Subcommand::argument(const std::string&, std::uint64_t&, const std::string&) const;
-template Argument Subcommand::argument(const std::string&, std::optional<int>&, const std::string&) const;
 template Argument Subcommand::argument(const std::string&, std::optional<std::uint64_t>&, const std::string&) const;
 
 }  // namespace truebearing

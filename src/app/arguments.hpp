@@ -22,6 +22,7 @@ class Argument {
   Argument one_of(const std::vector<std::string>& values) const;
   Argument within(int least, int greatest) const;
   Argument positive() const;
+  Argument non_negative() const;
   /// Refused without `other`.
   Argument needs(const Argument& other) const;
   /// --help says which value stands where none is given.

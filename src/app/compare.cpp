@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "app/log_options.hpp"
 #include "app/output.hpp"
 #include "app/subcommands.hpp"
 #include "app/workflow.hpp"
@@ -18,6 +19,7 @@ struct CompareArguments {
   std::string study;
   std::string json;
   std::string truth;
+  LogArguments reading;
   std::optional<std::uint64_t> seed;
   std::size_t runs = 0;
   int threads = 0;
@@ -38,7 +40,7 @@ void run_compare(const CompareArguments& options) {
     models = train_study(study, {}, workflow);
   }
   std::unique_ptr<Scenario> recorded;
-  if (!options.truth.empty()) recorded = study.recorded_scenario(options.truth);
+  if (!options.truth.empty()) recorded = study.recorded_scenario(options.truth, options.reading.over(study.recording_options()));
   const std::vector<NamedScenario> scenarios =
       recorded ? std::vector<NamedScenario>{{options.truth, recorded.get()}} : study.evaluation_scenarios();
   std::string notes;
@@ -78,6 +80,7 @@ void add_compare(const Subcommands& all) {
   command.argument("--truth", options->truth,
                    "a recorded track (log with truth, or positions), measured afresh in every run; or a line array's "
                    "log with truth, replayed");
+  add_log_arguments(command, options->reading);
   command.flag("--retrain", options->retrain, "tune and train afresh with this seed; files are left alone");
   command.argument("--json", options->json, "write the results as JSON; - is standard output");
   command.flag("--quiet", options->quiet, "no progress");

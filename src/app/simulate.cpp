@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <memory>
-#include <optional>
 #include <system_error>
 #include <vector>
 
@@ -23,7 +22,7 @@ struct SimulateArguments {
   std::string scenario;
   std::string folder;
   std::string track;
-  std::optional<int> track_id;
+  std::string track_id;
   double track_from_s = 0.0;
   std::uint64_t seed = 1;
   std::size_t runs = 1;
@@ -37,7 +36,9 @@ std::unique_ptr<Scenario> scenario_of(const SimulateArguments& options) {
   if (!bearings)
     throw InputError(options.scenario, "has no target that --track could stand for",
                      "a scenario of kind \"bearings_only\" or \"passive_sonar\"");
-  return std::make_unique<BearingsOfTrack>(read_target_track(options.track, options.track_id), options.track_from_s,
+  RecordingOptions reading;
+  reading.target = options.track_id;
+  return std::make_unique<BearingsOfTrack>(read_target_track(options.track, reading), options.track_from_s,
                                            bearings->parameters());
 }
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "app/log_options.hpp"
 #include "app/output.hpp"
 #include "app/subcommands.hpp"
 #include "app/tma_answer.hpp"
@@ -23,6 +24,7 @@ struct TmaArguments {
   std::string log;
   std::string method = "ml";
   std::string json;
+  LogArguments reading;
   double sigma_deg = 0.0;
   double from_s = -std::numeric_limits<double>::infinity();
   double to_s = std::numeric_limits<double>::infinity();
@@ -44,7 +46,11 @@ struct Windows {
 };
 
 Recording read_log(const TmaArguments& options) {
-  Recording recording = read_recording(options.log);
+  LogFindings findings;
+  RecordingOptions wanted;
+  wanted.measured = {"bearing_deg", "frequency_hz"};
+  Recording recording = read_recording(options.log, options.reading.over(wanted), &findings);
+  print_note(options.log, findings.note());
   const bool has_frequencies = recording.measured == std::vector<std::string>{"bearing_deg", "frequency_hz"};
   if (!has_frequencies && recording.measured != std::vector<std::string>{"bearing_deg"})
     throw InputError(options.log, fmt::format("measures {}", fmt::join(recording.measured, ", ")),
@@ -266,6 +272,7 @@ void add_tma(const Subcommands& all) {
       .positive();
   command.argument("--range-sigma", options->range_sigma_m, "of map: its standard deviation, m").positive();
   command.argument("--json", options->json, "write the answer as JSON; - is standard output");
+  add_log_arguments(command, options->reading);
   command.runs([options] { tma(*options); });
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/log_options.hpp"
 #include "app/output.hpp"
 #include "app/subcommands.hpp"
 #include "app/track_report.hpp"
@@ -34,6 +35,7 @@ struct TrackArguments {
   std::string output;
   std::string json;
   std::string events;
+  LogArguments reading;
 
   bool only_text_for_programs() const {
     return is_standard_output(output) || is_standard_output(json) || is_standard_output(events);
@@ -318,7 +320,8 @@ void track_snapshots(const Study& study, const TrackArguments& options) {
 }
 
 void track_rows(const Study& study, const TrackArguments& options) {
-  RecordingReader reader(options.log);
+  const RecordingOptions reading = options.reading.over(study.recording_options());
+  MeasurementLog reader(with_names(CsvReader(std::filesystem::path(options.log)), reading), reading);
   check_measured(reader.measured(), study.scenario(), options.log);
   if (!options.json.empty() && !reader.truth_space()) throw no_truth(options.log);
   // Whoever is only given the records needs no scores, and the log has no end that could be waited for.
@@ -336,6 +339,7 @@ void track_rows(const Study& study, const TrackArguments& options) {
     if (reader.may_wait()) run.flush();
   }
   run.end_track(reader.counts());
+  print_note(options.log, reader.findings().note());
   std::vector<Recording> tracks;
   if (scores) reader.complete(tracks.emplace_back(std::move(recording)));
   finish(study, options, run, reader.counts(), std::move(tracks));
@@ -371,6 +375,7 @@ void add_track(const Subcommands& all) {
   command.argument("--json", options->json, "write the scores as JSON, where the log has truth; - is standard output");
   command.argument("--events", options->events,
                    "write what the trackers noticed (turns, a source's jumps, ...) as CSV; - is standard output");
+  add_log_arguments(command, options->reading);
   command.runs([options] { track(*options); });
 }
 

@@ -250,10 +250,10 @@ class LineByLine : public std::streambuf {
   std::size_t next_ = 0;
 };
 
-TEST(RecordingReader, GivesEachRowAsSoonAsItHasCome) {
+TEST(MeasurementLog, GivesEachRowAsSoonAsItHasCome) {
   LineByLine lines({"time_s,position_m,truth_position_m\n", "1,10,9\n", "1,10,9\n", "2,,8\n", "3,30,7\n", "2,30,7\n"});
   std::istream stream(&lines);
-  RecordingReader reader(stream, "log.csv");
+  MeasurementLog reader(CsvReader(stream, "log.csv"));
   EXPECT_EQ(lines.given(), 1u) << "the header";
   EXPECT_EQ(reader.truth_space(), &line_space());
   ASSERT_TRUE(reader.next());
@@ -271,9 +271,9 @@ TEST(RecordingReader, GivesEachRowAsSoonAsItHasCome) {
   EXPECT_THAT(error_message([&] { reader.next(); }), HasSubstr("log.csv:6: time_s: is 2, earlier than 3"));
 }
 
-TEST(RecordingReader, KnowsWhatHasCome) {
+TEST(MeasurementLog, KnowsWhatHasCome) {
   std::istringstream stream("time_s,position_m\n1,10\n2,20\n");
-  RecordingReader reader(stream, "log.csv");
+  MeasurementLog reader(CsvReader(stream, "log.csv"));
   EXPECT_FALSE(reader.may_wait());
   ASSERT_TRUE(reader.next());
   EXPECT_FALSE(reader.may_wait());

@@ -22,7 +22,34 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
+// In small letters, words joined by single underscores.
+std::string plain_form(std::string_view name) {
+  std::string plain;
+  for (const char c : name) {
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+    if (letter || (c >= 'A' && c <= 'Z'))
+      plain += letter ? c : static_cast<char>(c - 'A' + 'a');
+    else if (!plain.empty() && plain.back() != '_')
+      plain += '_';
+  }
+  if (plain.ends_with('_')) plain.pop_back();
+  return plain;
+}
+
 }  // namespace
+
+std::string near_miss(std::string_view name, const std::vector<std::string>& valid) {
+  constexpr std::size_t kLongest = 80, kLettersPerSlip = 5;
+  if (name.size() > kLongest) return {};
+  const std::string plain = plain_form(name);
+  for (const std::string& candidate : valid) {
+    const std::size_t slips = candidate.size() / kLettersPerSlip;
+    if (plain.size() > candidate.size() + slips || candidate.size() > plain.size() + slips) continue;
+    if (edit_distance(plain, candidate) <= slips || std::is_permutation(plain.begin(), plain.end(), candidate.begin(), candidate.end()))
+      return candidate;
+  }
+  return {};
+}
 
 std::string nearest_name(std::string_view name, const std::vector<std::string>& valid) {
   const std::string_view shortened = name.substr(0, 80);  // a hostile key must not cost quadratic time

@@ -1,11 +1,14 @@
-// CSV with a header (RFC 4180): comma, quoted cells, LF or CRLF, an optional UTF-8 byte order mark. Read row by row, so
-// that the size of a file does not matter; numbers are read and written without regard to the locale.
+// CSV with a header (RFC 4180), as programs write it: cells separated by comma, semicolon or tab, whichever the header
+// has most of, or by what a line `sep=;` in front of it names; decimal commas where the comma does not separate cells;
+// quoted cells; LF, CRLF or CR; an optional UTF-8 byte order mark; lines that begin with # are comments. Read row by
+// row, so that the size of a file does not matter; numbers are read and written without regard to the locale.
 #pragma once
 
 #include <cstddef>
 #include <filesystem>
 #include <istream>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -23,6 +26,10 @@ class CsvReader {
   CsvReader(std::istream& stream, std::string name);
 
   const std::vector<std::string>& header() const { return header_; }
+  char separator() const { return separator_; }
+  /// Gives columns other names: pairs of what the file calls it and the new one. Throws where the file has no such
+  /// column, or two would have one name.
+  void rename(std::span<const std::pair<std::string, std::string>> names);
   /// Index of a column; -1 where there is none of that name.
   int column(std::string_view name) const;
   /// The same where the column must be there.
@@ -33,8 +40,12 @@ class CsvReader {
   /// Whether next() may have to wait for who writes the rows: of those that have come all are read.
   bool may_wait() const { return stream_->rdbuf()->in_avail() <= 0; }
   std::string_view text(std::size_t column) const;
-  /// The cell as a number; NaN where it is empty, nan or inf.
+  /// The same without spaces around it.
+  std::string_view word(std::size_t column) const;
+  /// The cell as a number; NaN where it is empty, nan, inf or another word for "none": NA, null, None, -, 1.#QNAN, ...
   double number(std::size_t column) const;
+  /// The same without an error: false where the cell is no number.
+  bool read_number(std::size_t column, double& value) const;
 
   const std::string& name() const { return name_; }
   /// The line at which the current row begins, from 1.
@@ -44,13 +55,19 @@ class CsvReader {
 
  private:
   void read_header();
-  bool read_record();
+  std::string read_header_line();
+  void index_names();
+  bool read_record(std::streambuf& in);
+  void skip_comments(std::streambuf& in);
   InputError line_error(const std::string& found, const std::string& valid = {}) const;
 
   std::unique_ptr<std::istream> file_;
   std::istream* stream_;
   std::string name_;
   std::vector<std::string> header_;
+  std::vector<std::size_t> by_name_;  // columns in the order of their names
+  char separator_ = ',';
+  mutable char decimal_mark_ = 0;  // the file's, once a number has shown it
   std::string text_;               // the cells of the current row, one after the other
   std::vector<std::size_t> ends_;  // where each of them ends
   std::size_t line_ = 0;

@@ -1,25 +1,26 @@
 #include "truebearing/recording/geographic_track.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <GeographicLib/Geocentric.hpp>
 #include <GeographicLib/LocalCartesian.hpp>
 #include <GeographicLib/Math.hpp>
+#include <limits>
+#include <optional>
 #include <span>
+#include <unordered_map>
 #include <utility>
 
 #include "truebearing/core/angle.hpp"
 #include "truebearing/core/constants.hpp"
 #include "truebearing/core/error.hpp"
-#include "truebearing/io/csv.hpp"
+#include "truebearing/core/printable.hpp"
+#include "truebearing/recording/time_column.hpp"
 #include "truebearing/recording/velocity_truth.hpp"
 
 namespace truebearing {
 namespace {
-
-constexpr std::array<const char*, 3> kTargetColumns{"vessel", "flight", "track"};
 
 struct Fix {
   double time_s;
@@ -35,96 +36,162 @@ struct Fix {
 };
 
 struct Target {
-  double number;
+  std::string name;
   std::vector<Fix> fixes;
+  double latest_s = -std::numeric_limits<double>::infinity();
   int repeated = 0;
   int glitches = 0;
   int wrong_velocities = 0;
 };
 
 struct FixColumns {
-  std::size_t time, latitude, longitude;
-  int target = -1;
-  int speed = -1, course = -1;
+  TimeColumn time;
+  LogColumn latitude, longitude;
+  std::optional<std::size_t> target;
+  std::optional<LogColumn> speed, course;  // both or neither
 };
 
-FixColumns find_columns(const CsvReader& csv) {
-  FixColumns columns{csv.required_column("time_s"), csv.required_column("latitude_deg"),
-                     csv.required_column("longitude_deg")};
-  for (const char* name : kTargetColumns) {
-    const int column = csv.column(name);
-    if (column < 0) continue;
-    if (columns.target >= 0)
-      throw InputError(
-          csv.name(),
-          fmt::format("has the columns {} and {}", csv.header()[static_cast<std::size_t>(columns.target)], name),
-          "one column that separates targets");
-    columns.target = column;
+LogColumn required_angle(const CsvReader& csv, const std::string& stem) {
+  const auto column = find_column(csv, stem, Dimension::angle);
+  return column ? *column : LogColumn{csv.required_column(stem + "_deg"), ColumnRole::position, stem + "_deg"};
+}
+
+FixColumns find_columns(const CsvReader& csv, const RecordingOptions& options) {
+  FixColumns columns{TimeColumn(csv), required_angle(csv, "latitude"), required_angle(csv, "longitude"),
+                     find_target_column(csv, options), std::nullopt, std::nullopt};
+  for (const auto& [speed, course] :
+       {std::pair("groundspeed", "track"), std::pair("sog", "cog"), std::pair("speed", "course")}) {
+    const auto speed_column = find_column(csv, speed, Dimension::speed);
+    const auto course_column = find_column(csv, course, Dimension::angle);
+    if (!speed_column || !course_column) continue;
+    columns.speed = speed_column;
+    columns.course = course_column;
   }
-  for (const auto& [speed, course] : {std::pair("groundspeed_kn", "track_deg"), std::pair("speed_kn", "course_deg")})
-    if (csv.column(speed) >= 0 && csv.column(course) >= 0) {
-      columns.speed = csv.column(speed);
-      columns.course = csv.column(course);
-    }
   return columns;
 }
 
-// `none`: what a transponder sends that does not know it.
-double read_angle(const CsvReader& csv, std::size_t column, double low, double high, double none) {
-  const double angle_deg = csv.number(column);
-  if (angle_deg == none) return kNaN;
-  if (angle_deg < low || angle_deg > high)
-    throw csv.error(column, fmt::format("is {}", angle_deg), fmt::format("degrees in [{}, {}]", low, high));
+/// A range of angles in degrees, and what a transponder sends that does not know its own.
+struct AngleRange {
+  double low, high, none;
+};
+
+// In degrees, whatever the unit.
+double read_angle(const CsvReader& csv, const LogColumn& column, const AngleRange& range, bool& not_available) {
+  const double number = csv.number(column.index);
+  const double angle_deg = column.quantity.ends_with("_deg") ? number : degrees(number * column.factor);
+  if (angle_deg == range.none) {
+    not_available = true;
+    return kNaN;
+  }
+  if (angle_deg < range.low || angle_deg > range.high)
+    throw csv.error(column.index, "is " + as_shown(csv.word(column.index)),
+                    fmt::format("degrees in [{}, {}]", range.low, range.high));
   return angle_deg;
 }
 
-Fix read_fix(const CsvReader& csv, const FixColumns& columns) {
-  // ITU-R M.1371: latitude 91, longitude 181, 102.3 knots, course 360 are not available.
-  constexpr double kNoLatitude_deg = 91.0, kNoLongitude_deg = 181.0, kNoSpeed_kn = 102.3, kNoCourse_deg = 360.0;
-  Fix fix{csv.number(columns.time), read_angle(csv, columns.latitude, -90.0, 90.0, kNoLatitude_deg),
-          read_angle(csv, columns.longitude, -180.0, 360.0, kNoLongitude_deg)};
-  if (std::isnan(fix.time_s)) throw csv.error(columns.time, "is missing or infinite", "a finite time");
-  if (columns.speed >= 0) {
-    constexpr double kKnot_mps = 1852.0 / 3600.0;
-    const double course_deg = csv.number(static_cast<std::size_t>(columns.course));
-    const double speed_kn = csv.number(static_cast<std::size_t>(columns.speed)), course_rad = radians(course_deg);
-    if (speed_kn != kNoSpeed_kn || course_deg != kNoCourse_deg)
-      fix.velocity_mps = kKnot_mps * speed_kn * Eigen::Vector2d(std::sin(course_rad), std::cos(course_rad));
-  }
+Eigen::Vector2d read_velocity(const CsvReader& csv, const FixColumns& columns, std::size_t& not_available) {
+  // ITU-R M.1371: 102.3 knots and course 360 are not available.
+  constexpr double kNoSpeed_mps = 102.3 * 1852.0 / 3600.0, kNoCourse_rad = radians(360.0), kRounding = 1e-9;
+  const double speed_mps = csv.number(columns.speed->index) * columns.speed->factor;
+  const double course_rad = csv.number(columns.course->index) * columns.course->factor;
+  if (std::abs(speed_mps - kNoSpeed_mps) > kRounding || std::abs(course_rad - kNoCourse_rad) > kRounding)
+    return speed_mps * Eigen::Vector2d(std::sin(course_rad), std::cos(course_rad));
+  ++not_available;
+  return {kNaN, kNaN};
+}
+
+Fix read_fix(const CsvReader& csv, FixColumns& columns, std::size_t& not_available) {
+  constexpr AngleRange kLatitude{-90.0, 90.0, 91.0}, kLongitude{-180.0, 360.0, 181.0};  // of ITU-R M.1371
+  bool has_no_position = false;
+  Fix fix{columns.time.read(csv), read_angle(csv, columns.latitude, kLatitude, has_no_position),
+          read_angle(csv, columns.longitude, kLongitude, has_no_position)};
+  not_available += has_no_position;
+  if (columns.speed) fix.velocity_mps = read_velocity(csv, columns, not_available);
   if (std::isnan(fix.latitude_deg) || std::isnan(fix.longitude_deg)) fix.latitude_deg = fix.longitude_deg = kNaN;
   return fix;
 }
 
-double read_target(const CsvReader& csv, const FixColumns& columns) {
-  if (columns.target < 0) return 0.0;
-  const auto column = static_cast<std::size_t>(columns.target);
-  const double number = csv.number(column);
-  if (std::isnan(number) || number != std::floor(number))
-    throw csv.error(column, fmt::format("is \"{}\"", csv.text(column)), "an integer");
-  return number;
+std::string names_of(const std::vector<Target>& targets) {
+  constexpr std::size_t kMostNames = 12;
+  std::string list;
+  for (std::size_t i = 0; i < std::min(targets.size(), kMostNames); ++i)
+    list.append(i == 0 ? "" : ", ").append(targets[i].name);
+  return targets.size() > kMostNames ? list + ", ..." : list;
 }
 
-std::vector<Target> read_targets(CsvReader& csv) {
-  const FixColumns columns = find_columns(csv);
-  std::vector<Target> targets;
-  while (csv.next()) {
-    const double number = read_target(csv, columns);
-    const Fix fix = read_fix(csv, columns);
-    auto target = std::find_if(targets.begin(), targets.end(), [&](const Target& t) { return t.number == number; });
-    if (target == targets.end()) target = targets.insert(targets.end(), Target{number, {}});
-    if (!target->fixes.empty()) {
-      const Fix& last = target->fixes.back();
-      if (fix.time_s < last.time_s)
-        throw csv.error(columns.time, fmt::format("is {}, earlier than {} before it", fix.time_s, last.time_s),
-                        "times that do not decrease");
-      if (fix == last) {
-        ++target->repeated;
-        continue;
-      }
-    }
-    target->fixes.push_back(fix);
+// Targets in the order of their first rows, and where each is found by its name.
+class Targets {
+ public:
+  Target& of(const std::string& name) {
+    const auto [place, is_new] = places_.try_emplace(name, targets_.size());
+    if (is_new) targets_.push_back(Target{name, {}});
+    return targets_[place->second];
   }
-  return targets;
+  std::vector<Target> all() && { return std::move(targets_); }
+
+ private:
+  std::vector<Target> targets_;
+  std::unordered_map<std::string, std::size_t> places_;
+};
+
+std::string read_name(const CsvReader& csv, const FixColumns& columns) {
+  if (!columns.target) return {};
+  std::string name = read_target_name(csv, *columns.target);
+  if (name.empty()) throw csv.error(*columns.target, "is empty", "an integer or a name that tells targets apart");
+  return name;
+}
+
+// Puts late fixes in order and drops those that say what the one before says.
+void put_in_order(Target& target) {
+  std::vector<Fix>& fixes = target.fixes;
+  std::stable_sort(fixes.begin(), fixes.end(), [](const Fix& a, const Fix& b) { return a.time_s < b.time_s; });
+  const auto end = std::unique(fixes.begin(), fixes.end());
+  target.repeated += static_cast<int>(fixes.end() - end);
+  fixes.erase(end, fixes.end());
+}
+
+std::vector<Target> read_targets(CsvReader& csv, const RecordingOptions& options, GeographicTracks& tracks) {
+  FixColumns columns = find_columns(csv, options);
+  if (!options.target.empty() && !columns.target)
+    throw InputError(csv.name(), "has no column that tells targets apart", "vessel, flight, track, mmsi, icao24, callsign");
+  Targets targets;
+  while (csv.next()) {
+    const std::string name = read_name(csv, columns);
+    Target& target = targets.of(name);
+    if (!options.target.empty() && name != options.target) continue;
+    const Fix fix = read_fix(csv, columns, tracks.not_available);
+    if (fix.time_s < target.latest_s - options.sort_window_s)
+      throw csv.error(columns.time.index(), fmt::format("is {}, earlier than {} before it", fix.time_s, target.latest_s),
+                      fmt::format("times that do not decrease, or --sort-window {:.6g} or more",
+                                  target.latest_s - fix.time_s));
+    tracks.late += fix.time_s < target.latest_s;
+    target.latest_s = std::max(target.latest_s, fix.time_s);
+    target.fixes.push_back(fix);
+  }
+  std::vector<Target> all = std::move(targets).all();
+  const auto is_wanted = [&](const Target& target) { return target.name == options.target; };
+  if (options.target.empty()) return all;
+  if (std::none_of(all.begin(), all.end(), is_wanted))
+    throw InputError(csv.name(), "has no track " + as_shown(options.target), "one of " + names_of(all));
+  std::erase_if(all, [&](const Target& target) { return !is_wanted(target); });
+  return all;
+}
+
+// Receivers without a fix write 0, 0. A target that was near there may well have been there too.
+std::size_t remove_null_island(Target& target) {
+  constexpr double kNear_deg = 1.0;
+  const auto is_origin = [](const Fix& fix) { return fix.latitude_deg == 0.0 && fix.longitude_deg == 0.0; };
+  const auto is_near = [&](const Fix& fix) {
+    return std::abs(fix.latitude_deg) < kNear_deg && std::abs(fix.longitude_deg) < kNear_deg && !is_origin(fix);
+  };
+  if (std::any_of(target.fixes.begin(), target.fixes.end(), is_near)) return 0;
+  std::size_t removed = 0;
+  for (Fix& fix : target.fixes) {
+    if (!is_origin(fix)) continue;
+    fix.latitude_deg = fix.longitude_deg = kNaN;
+    ++removed;
+  }
+  return removed;
 }
 
 Eigen::Vector3d geocentric(const Fix& fix) {
@@ -223,7 +290,8 @@ std::vector<std::size_t> stretches(const Target& target, double max_gap_periods)
 }
 
 // Velocities stretch by stretch, then NaN where nothing is to be scored.
-void complete_truth(const Target& target, const GeographicTrackOptions& options, std::vector<BoundedVector>& x) {
+// Returns the highest speed, whether it is scored or not.
+double complete_truth(const Target& target, const GeographicTrackOptions& options, std::vector<BoundedVector>& x) {
   std::vector<double> time_s;
   for (const Fix& fix : target.fixes) time_s.push_back(fix.time_s);
   std::vector<std::size_t> starts = stretches(target, options.max_gap_periods);
@@ -237,17 +305,21 @@ void complete_truth(const Target& target, const GeographicTrackOptions& options,
                           std::span(x).subspan(starts[i], count));
   }
   for (std::size_t i = 1; i + 1 < starts.size(); ++i) x[starts[i]].setConstant(kNaN);
-  for (BoundedVector& state : x)
-    if (state.tail<2>().norm() < options.min_speed_mps) state.setConstant(kNaN);
+  double fastest_mps = 0.0;
+  for (BoundedVector& state : x) {
+    const double speed_mps = state.tail<2>().norm();
+    if (speed_mps > fastest_mps) fastest_mps = speed_mps;
+    if (speed_mps < options.min_speed_mps) state.setConstant(kNaN);
+  }
+  return fastest_mps;
 }
 
-Recording make_recording(const Target& target, const GeographicTrackOptions& options) {
+Recording make_recording(const Target& target, const GeographicTrackOptions& options, double& fastest_mps) {
   const GeographicLib::LocalCartesian frame = local_frame(target);
   Recording recording;
   recording.measured = {"east_m", "north_m"};
   recording.truth_space = &plane_space();
   recording.truth.resize(1);
-  recording.truth[0].track = static_cast<int>(target.number);
   for (const Fix& fix : target.fixes) {
     Measurement measurement;
     measurement.time_s = fix.time_s;
@@ -264,44 +336,78 @@ Recording make_recording(const Target& target, const GeographicTrackOptions& opt
   recording.counts.repeated = target.repeated;
   recording.counts.glitches = target.glitches;
   if (options.recorded_velocity) recording.counts.wrong_velocities = target.wrong_velocities;
-  complete_truth(target, options, recording.truth[0].x);
+  fastest_mps = std::max(fastest_mps, complete_truth(target, options, recording.truth[0].x));
   return recording;
-}
-
-GeographicTracks read_tracks(CsvReader csv, const GeographicTrackOptions& options) {
-  GeographicTracks tracks;
-  GeographicTrackOptions believed = options;
-  believed.recorded_velocity &= find_columns(csv).speed >= 0;
-  for (Target& target : read_targets(csv)) {
-    if (std::isfinite(options.max_speed_mps)) remove_glitches(target, options.max_speed_mps);
-    remove_wrong_velocities(target, options.max_speed_mps);
-    const auto usable =
-        std::count_if(target.fixes.begin(), target.fixes.end(), [](const Fix& fix) { return !fix.is_missing(); });
-    if (usable < kFewestRows)
-      ++tracks.left_out;
-    else
-      tracks.recordings.push_back(make_recording(target, believed));
-  }
-  if (tracks.recordings.empty())
-    throw InputError(csv.name(), "has no track to follow", fmt::format("at least {} usable rows of one", kFewestRows));
-  return tracks;
 }
 
 }  // namespace
 
+bool is_geographic_track(const CsvReader& csv) {
+  return find_column(csv, "latitude", Dimension::angle).has_value();
+}
+
 bool is_geographic_track(const std::filesystem::path& path) {
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(path, unknown)) return false;  // a pipe can be read only once
-  return CsvReader(path).column("latitude_deg") >= 0;
+  return is_geographic_track(CsvReader(path));
 }
 
-GeographicTracks read_geographic_tracks(const std::filesystem::path& path, const GeographicTrackOptions& options) {
-  return read_tracks(CsvReader(path), options);
+GeographicTracks read_geographic_tracks(CsvReader csv, const GeographicTrackOptions& options,
+                                        const RecordingOptions& recording) {
+  GeographicTracks tracks;
+  GeographicTrackOptions believed = options;
+  const FixColumns columns = find_columns(csv, recording);
+  believed.recorded_velocity &= columns.speed.has_value();
+  std::size_t rows = 0, glitches = 0;
+  for (Target& target : read_targets(csv, recording, tracks)) {
+    put_in_order(target);
+    tracks.null_island += remove_null_island(target);
+    if (std::isfinite(options.max_speed_mps)) remove_glitches(target, options.max_speed_mps);
+    remove_wrong_velocities(target, options.max_speed_mps);
+    rows += target.fixes.size();
+    glitches += static_cast<std::size_t>(target.glitches);
+    const auto usable =
+        std::count_if(target.fixes.begin(), target.fixes.end(), [](const Fix& fix) { return !fix.is_missing(); });
+    if (usable < kFewestRows) {
+      ++tracks.left_out;
+      continue;
+    }
+    tracks.recordings.push_back(make_recording(target, believed, tracks.fastest_mps));
+    if (columns.target) tracks.names.push_back(target.name);
+  }
+  if (tracks.recordings.empty())
+    throw InputError(csv.name(),
+                     fmt::format("has no track to follow: {} rows of {} targets, {} of them glitches", rows,
+                                 tracks.left_out, glitches),
+                     fmt::format("at least {} usable rows of one", kFewestRows));
+  return tracks;
+}
+
+GeographicTracks read_geographic_tracks(const std::filesystem::path& path, const GeographicTrackOptions& options,
+                                        const RecordingOptions& recording) {
+  return read_geographic_tracks(with_names(CsvReader(path), recording), options, recording);
 }
 
 GeographicTracks read_geographic_tracks(std::istream& stream, const std::string& name,
-                                        const GeographicTrackOptions& options) {
-  return read_tracks(CsvReader(stream, name), options);
+                                        const GeographicTrackOptions& options, const RecordingOptions& recording) {
+  return read_geographic_tracks(with_names(CsvReader(stream, name), recording), options, recording);
+}
+
+std::vector<LogColumn> geographic_columns(const CsvReader& csv, const RecordingOptions& options) {
+  const FixColumns found = find_columns(csv, options);
+  std::vector<LogColumn> columns(csv.header().size());
+  for (std::size_t index = 0; index < columns.size(); ++index) columns[index].index = index;
+  const auto take = [&](const LogColumn& column, ColumnRole role) {
+    columns[column.index] = column;
+    columns[column.index].role = role;
+  };
+  take({found.time.index(), ColumnRole::time, "time_s"}, ColumnRole::time);
+  take(found.latitude, ColumnRole::position);
+  take(found.longitude, ColumnRole::position);
+  if (found.target) take({*found.target, ColumnRole::target, "target"}, ColumnRole::target);
+  if (found.speed) take(*found.speed, ColumnRole::velocity);
+  if (found.course) take(*found.course, ColumnRole::velocity);
+  return columns;
 }
 
 }  // namespace truebearing

@@ -5,225 +5,38 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
-#include <span>
 #include <string_view>
+#include <utility>
 
 #include "truebearing/core/angle.hpp"
 #include "truebearing/core/constants.hpp"
 #include "truebearing/core/error.hpp"
-#include "truebearing/io/csv.hpp"
+#include "truebearing/core/printable.hpp"
+#include "truebearing/recording/log_units.hpp"
 #include "truebearing/recording/velocity_truth.hpp"
 
 namespace truebearing {
-
-/// Which column of a log means what.
-struct CsvLayout {
-  /// A column of the log and what its numbers are multiplied by.
-  struct Column {
-    std::size_t index;
-    double factor;
-  };
-  std::size_t time = 0;
-  std::vector<std::string> measured;
-  std::vector<Column> z;
-  std::vector<Column> sigma;        // as long as z, or empty
-  std::vector<std::size_t> sensor;  // none, position, or position and velocity
-  std::vector<std::size_t> guess;   // none, range, or range and speed, with their sigmas
-  const StateSpace* truth_space = nullptr;
-  std::vector<std::optional<Column>> truth;  // by component of the truth space
-};
-
 namespace {
-
-using Column = CsvLayout::Column;
-
-constexpr double kRadiansPerDegree = radians(1.0);
-
-/// Multiplies a number of a log to make it one of the program.
-struct Unit {
-  std::string_view suffix;
-  double factor;
-};
-constexpr std::array kUnits{Unit{"_m", 1.0},     Unit{"_mps", 1.0},
-                            Unit{"_mps2", 1.0},  Unit{"_rad", 1.0},
-                            Unit{"_hz", 1.0},    Unit{"_deg", kRadiansPerDegree},
-                            Unit{"_radps", 1.0}, Unit{"_degps", kRadiansPerDegree}};
 
 constexpr std::array<const char*, 4> kSensorColumns{"sensor_east_m", "sensor_north_m", "sensor_east_mps",
                                                     "sensor_north_mps"};
 constexpr std::array<const char*, 4> kGuessColumns{"guess_range_m", "guess_range_sigma_m", "guess_speed_mps",
                                                    "guess_speed_sigma_mps"};
-constexpr std::string_view kTruthPrefix = "truth_";
-constexpr std::string_view kSigma = "_sigma_";
-
-const Unit* find_unit(std::string_view column) {
-  const auto found = std::find_if(kUnits.begin(), kUnits.end(), [&](const Unit& unit) {
-    return column.size() > unit.suffix.size() && column.ends_with(unit.suffix);
-  });
-  return found == kUnits.end() ? nullptr : &*found;
-}
-
-std::string valid_units() {
-  std::string line = "a name that ends in ";
-  for (const Unit& unit : kUnits) line += (&unit == kUnits.data() ? "" : ", ") + std::string(unit.suffix);
-  return line;
-}
-
-/// "position_m" -> "position_sigma_m".
-std::string sigma_column(const std::string& measured) {
-  const std::size_t split = measured.size() - find_unit(measured)->suffix.size();
-  return measured.substr(0, split) + "_sigma" + measured.substr(split);
-}
-
-std::size_t position_in(const std::vector<std::string>& names, std::string_view name) {
-  return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-}
-
-Column unit_column(const CsvReader& csv, std::size_t index) {
-  const Unit* unit = find_unit(csv.header()[index]);
-  if (!unit) throw InputError(csv.name() + ": " + csv.header()[index], "names no known unit", valid_units());
-  return {index, unit->factor};
-}
-
-// Of four names those that the log has: none, the first two or all.
-std::vector<std::size_t> columns_of(const CsvReader& csv, const std::array<const char*, 4>& names, const char* what) {
-  std::vector<std::size_t> columns;
-  for (const char* name : names)
-    if (const int index = csv.column(name); index >= 0) columns.push_back(static_cast<std::size_t>(index));
-  const bool first_two = csv.column(names[0]) >= 0 && csv.column(names[1]) >= 0;
-  if (!columns.empty() && (!first_two || columns.size() % 2 != 0))
-    throw InputError(csv.name(), fmt::format("has {} columns that do not belong together", what),
-                     fmt::format("{}, {}, and {}, {} with them", names[0], names[1], names[2], names[3]));
-  return columns;
-}
-
-void find_truth(const CsvReader& csv, const std::vector<std::size_t>& columns, CsvLayout& layout) {
-  if (columns.empty()) return;
-  std::vector<std::string> given;
-  for (const std::size_t index : columns) given.push_back(csv.header()[index].substr(kTruthPrefix.size()));
-  // The smallest that has them all; a frequency alone says nothing of the plane.
-  const std::vector<std::string> kFrequencyAlone{"frequency_hz"};
-  for (const StateSpace* space : {&line_space(), &plane_space(), &plane_frequency_space()}) {
-    const auto known = [&](const std::string& component) { return space->component_index(component) >= 0; };
-    if (!layout.truth_space && given != kFrequencyAlone && std::all_of(given.begin(), given.end(), known))
-      layout.truth_space = space;
-  }
-  if (!layout.truth_space) layout.truth_space = &state_space_of_components(given);
-  for (const std::string& component : layout.truth_space->components) {
-    const std::size_t i = position_in(given, component);
-    layout.truth.push_back(i < given.size() ? std::optional(unit_column(csv, columns[i])) : std::nullopt);
-  }
-}
-
-CsvLayout read_csv_layout(const CsvReader& csv) {
-  CsvLayout layout;
-  layout.time = csv.required_column("time_s");
-  layout.sensor = columns_of(csv, kSensorColumns, "own-ship");
-  layout.guess = columns_of(csv, kGuessColumns, "guess");
-  std::vector<std::size_t> truth;
-  std::vector<std::string> sigma_names;
-  for (std::size_t index = 0; index < csv.header().size(); ++index) {
-    const std::string& name = csv.header()[index];
-    const bool sensor = std::find(kSensorColumns.begin(), kSensorColumns.end(), name) != kSensorColumns.end();
-    const bool guess = std::find(kGuessColumns.begin(), kGuessColumns.end(), name) != kGuessColumns.end();
-    if (index == layout.time || sensor || guess) continue;
-    const Column column = unit_column(csv, index);
-    if (name.starts_with(kTruthPrefix)) {
-      truth.push_back(index);
-    } else if (name.find(kSigma) != std::string::npos) {
-      sigma_names.push_back(name);
-    } else {
-      layout.measured.push_back(name);
-      layout.z.push_back(column);
-    }
-  }
-  if (layout.z.empty() || layout.z.size() > kMaxDimension)
-    throw InputError(csv.name(), fmt::format("has {} measured columns", layout.z.size()),
-                     fmt::format("1 to {}, besides time_s, sensor_, sigma and truth_ columns", kMaxDimension));
-
-  std::vector<std::string> expected;
-  for (const std::string& name : layout.measured) expected.push_back(sigma_column(name));
-  for (const std::string& name : sigma_names)
-    if (position_in(expected, name) == expected.size())
-      throw InputError(csv.name() + ": " + name, "belongs to no measured column",
-                       fmt::format("{}", fmt::join(expected, ", ")));
-  if (!sigma_names.empty())
-    for (const std::string& name : expected) layout.sigma.push_back(unit_column(csv, csv.required_column(name)));
-  find_truth(csv, truth, layout);
-  return layout;
-}
-
-std::vector<double> read_numbers(const CsvReader& csv) {
-  std::vector<double> row(csv.header().size());
-  for (std::size_t i = 0; i < row.size(); ++i) row[i] = csv.number(i);
-  return row;
-}
 
 bool identical(const std::vector<double>& a, const std::vector<double>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                     [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); });
 }
 
-// A row without a guess has empty cells there.
-std::optional<TargetGuess> read_guess(const CsvReader& csv, const CsvLayout& layout, const std::vector<double>& row) {
-  if (layout.guess.empty() || std::isnan(row[layout.guess[0]])) return std::nullopt;
-  for (const std::size_t index : layout.guess)
-    if (!(row[index] > 0.0)) throw csv.error(index, fmt::format("is {}", row[index]), "a number > 0");
-  TargetGuess guess{row[layout.guess[0]], row[layout.guess[1]]};
-  if (layout.guess.size() == 4) {
-    guess.speed_mps = row[layout.guess[2]];
-    guess.speed_sigma_mps = row[layout.guess[3]];
-  }
-  return guess;
-}
-
-Measurement read_measurement(const CsvReader& csv, const CsvLayout& layout, const std::vector<double>& row) {
-  Measurement measurement;
-  measurement.time_s = row[layout.time];
-  measurement.z.resize(static_cast<Eigen::Index>(layout.z.size()));
-  measurement.sigma.resize(static_cast<Eigen::Index>(layout.sigma.size()));
-  for (std::size_t i = 0; i < layout.z.size(); ++i)
-    measurement.z(static_cast<Eigen::Index>(i)) = row[layout.z[i].index] * layout.z[i].factor;
-  for (std::size_t i = 0; i < layout.sigma.size(); ++i) {
-    const double sigma = row[layout.sigma[i].index];
-    if (sigma <= 0.0) throw csv.error(layout.sigma[i].index, fmt::format("is {}", sigma), "a number > 0");
-    measurement.sigma(static_cast<Eigen::Index>(i)) = sigma * layout.sigma[i].factor;
-    // A measurement of unknown or infinite spread says nothing.
-    if (std::isnan(sigma)) measurement.z(static_cast<Eigen::Index>(i)) = kNaN;
-  }
-  measurement.guess = read_guess(csv, layout, row);
-  if (layout.sensor.empty()) return measurement;
-
-  SensorState sensor;
-  sensor.position_m << row[layout.sensor[0]], row[layout.sensor[1]];
-  if (layout.sensor.size() == 4) sensor.velocity_mps << row[layout.sensor[2]], row[layout.sensor[3]];
-  if (sensor.position_m.allFinite() && sensor.velocity_mps.allFinite())
-    measurement.sensor = sensor;
-  else
-    measurement.z.setConstant(kNaN);  // a measurement from an unknown place says nothing either
-  return measurement;
-}
-
-BoundedVector read_truth(const CsvLayout& layout, const std::vector<double>& row) {
-  BoundedVector x = BoundedVector::Constant(static_cast<Eigen::Index>(layout.truth.size()), kNaN);
-  for (std::size_t i = 0; i < layout.truth.size(); ++i)
-    if (const auto& column = layout.truth[i]) x(static_cast<Eigen::Index>(i)) = row[column->index] * column->factor;
-  return x;
-}
-
-Recording read_rows(RecordingReader reader) {
-  Recording recording;
-  while (reader.next()) reader.append_to(recording);
-  reader.complete(recording);
-  return recording;
+std::string count_of(std::size_t count, std::string_view what) {
+  return count == 0 ? std::string() : fmt::format("{} {}", count, what);
 }
 
 std::vector<double> file_factors(const std::vector<std::string>& names) {
   std::vector<double> factors;
   for (const std::string& name : names) {
-    const Unit* unit = find_unit(name);
-    if (!unit) throw InputError(name, "names no known unit", valid_units());
+    const Unit* unit = apart(name).unit;
+    if (!unit) throw InputError(name, "names no known unit", "a name that ends in " + all_suffixes());
     factors.push_back(unit->factor);
   }
   return factors;
@@ -236,85 +49,194 @@ void write_vector(CsvWriter& csv, const BoundedVector& values, const std::vector
 
 }  // namespace
 
-struct RecordingReader::Log {
-  explicit Log(CsvReader reader) : csv(std::move(reader)), layout(read_csv_layout(csv)) {
-    recording.measured = layout.measured;
-  }
-
-  CsvReader csv;
-  CsvLayout layout;
-  Recording recording;  // its columns and counts, without measurements
-  std::vector<double> row;
-  Measurement measurement;
-  BoundedVector truth;
-};
-
-RecordingReader::RecordingReader(const std::filesystem::path& path) : log_(std::make_unique<Log>(CsvReader(path))) {}
-
-RecordingReader::RecordingReader(std::istream& stream, const std::string& name)
-    : log_(std::make_unique<Log>(CsvReader(stream, name))) {}
-
-RecordingReader::RecordingReader(RecordingReader&&) noexcept = default;
-RecordingReader::~RecordingReader() = default;
-
-const std::vector<std::string>& RecordingReader::measured() const {
-  return log_->layout.measured;
+std::string LogFindings::note() const {
+  std::vector<std::string> parts{left_out_note(left_out), count_of(late, "late rows put in order"),
+                                 count_of(impossible, "impossible values taken for missing"),
+                                 count_of(not_available, "values that say \"not available\""),
+                                 count_of(of_others, "rows of other targets passed over")};
+  std::erase(parts, std::string());
+  return fmt::format("{}", fmt::join(parts, "; "));
 }
 
-const StateSpace* RecordingReader::truth_space() const {
-  return log_->layout.truth_space;
+MeasurementLog::MeasurementLog(CsvReader csv, RecordingOptions options)
+    : csv_(std::move(csv)),
+      options_(std::move(options)),
+      time_(csv_),
+      layout_(read_log_layout(csv_, time_, options_)),
+      cell_of_(csv_.header().size()),
+      target_(options_.target) {
+  columns_and_counts_.measured = layout_.measured();
+  const auto is_latitude = [](const std::string& name) { return apart(name).stem == "latitude"; };
+  if (std::any_of(measured().begin(), measured().end(), is_latitude))
+    throw InputError(csv_.name(), "holds positions on the globe, which are no measurements",
+                     "`truebearing compare STUDY.toml --truth`, which measures them");
+  if (!layout_.faults.empty()) throw layout_.faults.front();
+  if (!options_.target.empty() && !layout_.target)
+    throw InputError(csv_.name(), "has no column that tells targets apart",
+                     "vessel, flight, track, mmsi, icao24, callsign");
+  if (!(options_.sort_window_s >= 0.0)) throw InputError("sort window", "is negative or no number", "seconds >= 0");
+  for (const LogColumn& column : layout_.columns) {
+    const bool is_number =
+        column.role != ColumnRole::left_out && column.role != ColumnRole::time && column.role != ColumnRole::target;
+    if (!is_number) continue;
+    cell_of_[column.index] = columns_.size();
+    columns_.push_back(column.index);
+  }
+  findings_.left_out = layout_.left_out(csv_);
 }
 
-bool RecordingReader::next() {
-  CsvReader& csv = log_->csv;
-  const CsvLayout& layout = log_->layout;
-  std::vector<double>& previous = log_->row;
-  while (csv.next()) {
-    std::vector<double> row = read_numbers(csv);
-    const double time_s = row[layout.time];
-    if (std::isnan(time_s)) throw csv.error(layout.time, "is missing or infinite", "a finite time");
-    if (!previous.empty() && time_s < previous[layout.time])
-      throw csv.error(layout.time,
-                      fmt::format("is {}, earlier than {} in the row before", time_s, previous[layout.time]),
-                      "times that do not decrease");
-    if (identical(row, previous)) {
-      ++log_->recording.counts.repeated;
-      continue;
-    }
-    log_->measurement = read_measurement(csv, layout, row);
-    log_->recording.counts.missing += is_unusable(log_->recording, log_->measurement);
-    if (layout.truth_space) log_->truth = read_truth(layout, row);
-    previous = std::move(row);
-    return true;
-  }
-  if (previous.empty()) throw InputError(csv.name(), "has no rows", "at least one measurement");
+// Rows without a name are of the target that is read, unless a certain one is wanted.
+bool MeasurementLog::is_of_target() {
+  if (!layout_.target) return true;
+  const std::string target = read_target_name(csv_, *layout_.target);
+  if (target.empty() && options_.target.empty()) return true;
+  if (target_.empty()) target_ = target;
+  if (target == target_) return true;
+  if (options_.target.empty())
+    throw csv_.error(*layout_.target, fmt::format("is {}, after rows of {}", as_shown(target), as_shown(target_)),
+                     fmt::format("one target, chosen by --track-id {}", printable(target_)));
+  ++findings_.of_others;
   return false;
 }
 
-const Measurement& RecordingReader::measurement() const {
-  return log_->measurement;
+void MeasurementLog::check_lateness(double time_s) {
+  if (rows_ == 0) {
+    first_time_s_ = latest_time_s_ = time_s;
+    return;
+  }
+  times_differ_ |= time_s != first_time_s_;
+  if (time_s >= latest_time_s_) {
+    latest_time_s_ = time_s;
+    return;
+  }
+  if (time_s < latest_time_s_ - options_.sort_window_s)
+    throw csv_.error(
+        time_.index(), fmt::format("is {}, earlier than {} in a row before", time_s, latest_time_s_),
+        fmt::format("times that do not decrease, or --sort-window {:.6g} or more", latest_time_s_ - time_s));
+  ++findings_.late;
 }
 
-const BoundedVector& RecordingReader::truth() const {
-  return log_->truth;
+// What no sensor measures is missing. Bearings that go on beyond a turn may come to 511 degrees, single ones do not.
+void MeasurementLog::remove_impossible(Measurement& measurement) {
+  constexpr double kNoBearing_deg = 511.0, kTurn_deg = 360.0, kMostBearing_deg = 1e6;
+  for (std::size_t i = 0; i < layout_.z.size(); ++i) {
+    const std::string& quantity = layout_.z[i].quantity;
+    double& z = measurement.z(static_cast<Eigen::Index>(i));
+    const double bearing_deg = quantity == "bearing_deg" ? degrees(z) : 0.0;
+    const bool is_sentinel = !is_unwrapped_ && std::abs(bearing_deg - kNoBearing_deg) < 1e-6;
+    const bool is_impossible = (quantity == "range_m" && z < 0.0) || (quantity == "frequency_hz" && z <= 0.0) ||
+                               std::abs(bearing_deg) > kMostBearing_deg;
+    findings_.not_available += is_sentinel;
+    findings_.impossible += is_impossible;
+    if (is_sentinel || is_impossible)
+      z = kNaN;
+    else if (quantity == "bearing_deg" && !std::isnan(z))
+      is_unwrapped_ = std::abs(bearing_deg) > kTurn_deg;
+  }
 }
 
-const Recording::Counts& RecordingReader::counts() const {
-  return log_->recording.counts;
+Measurement MeasurementLog::read_measurement(const std::vector<double>& cells, double time_s) {
+  const auto number = [&](const LogColumn& column) { return cells[cell_of_[column.index]] * column.factor; };
+  Measurement measurement;
+  measurement.time_s = time_s;
+  measurement.z.resize(static_cast<Eigen::Index>(layout_.z.size()));
+  measurement.sigma.resize(static_cast<Eigen::Index>(layout_.sigma.size()));
+  for (std::size_t i = 0; i < layout_.z.size(); ++i) measurement.z(static_cast<Eigen::Index>(i)) = number(layout_.z[i]);
+  remove_impossible(measurement);
+  for (std::size_t i = 0; i < layout_.sigma.size(); ++i) {
+    const double sigma = number(layout_.sigma[i]);
+    if (sigma <= 0.0)
+      throw csv_.error(layout_.sigma[i].index, "is " + as_shown(csv_.word(layout_.sigma[i].index)), "a number > 0");
+    measurement.sigma(static_cast<Eigen::Index>(i)) = sigma;
+    // A measurement of unknown or infinite spread says nothing.
+    if (std::isnan(sigma)) measurement.z(static_cast<Eigen::Index>(i)) = kNaN;
+  }
+  // A row without a guess has empty cells there.
+  if (!layout_.guess.empty() && !std::isnan(number(layout_.guess[0]))) {
+    for (const LogColumn& column : layout_.guess)
+      if (!(number(column) > 0.0))
+        throw csv_.error(column.index, "is " + as_shown(csv_.word(column.index)), "a number > 0");
+    measurement.guess = TargetGuess{number(layout_.guess[0]), number(layout_.guess[1])};
+    if (layout_.guess.size() == 4) {
+      measurement.guess->speed_mps = number(layout_.guess[2]);
+      measurement.guess->speed_sigma_mps = number(layout_.guess[3]);
+    }
+  }
+  if (layout_.sensor.empty()) return measurement;
+
+  SensorState sensor;
+  sensor.position_m << number(layout_.sensor[0]), number(layout_.sensor[1]);
+  if (layout_.sensor.size() == 4) sensor.velocity_mps << number(layout_.sensor[2]), number(layout_.sensor[3]);
+  if (sensor.position_m.allFinite() && sensor.velocity_mps.allFinite())
+    measurement.sensor = sensor;
+  else
+    measurement.z.setConstant(kNaN);  // a measurement from an unknown place says nothing either
+  return measurement;
 }
 
-bool RecordingReader::may_wait() const {
-  return log_->csv.may_wait();
+// The file's next row of the target to those that wait; false at the end.
+bool MeasurementLog::read_row() {
+  do
+    if (!csv_.next()) return false;
+  while (!is_of_target());
+  Row row;
+  row.time_s = time_.read(csv_);
+  check_lateness(row.time_s);
+  row.number = rows_++;
+  for (const std::size_t column : columns_) row.cells.push_back(csv_.number(column));
+  row.measurement = read_measurement(row.cells, row.time_s);
+  row.truth = BoundedVector::Constant(static_cast<Eigen::Index>(layout_.truth.size()), kNaN);
+  for (std::size_t i = 0; i < layout_.truth.size(); ++i)
+    if (const auto& column = layout_.truth[i])
+      row.truth(static_cast<Eigen::Index>(i)) = row.cells[cell_of_[column->index]] * column->factor;
+  waiting_.push(std::move(row));
+  return true;
 }
 
-void RecordingReader::append_to(Recording& recording) const {
-  recording.measurements.push_back(log_->measurement);
+bool MeasurementLog::next() {
+  while (true) {
+    const auto is_due = [&] {
+      return !waiting_.empty() && waiting_.top().time_s <= latest_time_s_ - options_.sort_window_s;
+    };
+    bool more = true;
+    while (more && !is_due()) more = read_row();
+    if (waiting_.empty()) {
+      check_end();
+      return false;
+    }
+    Row row = waiting_.top();
+    waiting_.pop();
+    const bool is_repeated = given_ > 0 && row.time_s == row_.time_s && identical(row.cells, row_.cells);
+    if (is_repeated) {
+      ++columns_and_counts_.counts.repeated;
+      continue;
+    }
+    row_ = std::move(row);
+    ++given_;
+    columns_and_counts_.counts.missing += is_unusable(columns_and_counts_, row_.measurement);
+    return true;
+  }
+}
+
+// All rows at one time are an epoch written with too few digits, as a rule; two may be of two sensors.
+void MeasurementLog::check_end() const {
+  constexpr std::uint64_t kMost = 2;
+  if (given_ == 0)
+    throw InputError(csv_.name(), "has no rows" + (options_.target.empty() ? "" : " of " + as_shown(options_.target)),
+                     "at least one measurement");
+  if (given_ > kMost && !times_differ_)
+    throw InputError(csv_.name(), fmt::format("has all its {} rows at one time, {}", given_, first_time_s_),
+                     "times with all their digits");
+}
+
+void MeasurementLog::append_to(Recording& recording) const {
+  recording.measurements.push_back(measurement());
   if (!truth_space()) return;
   recording.truth.resize(1);
-  recording.truth[0].x.push_back(log_->truth);
+  recording.truth[0].x.push_back(truth());
 }
 
-void RecordingReader::complete(Recording& recording) const {
+void MeasurementLog::complete(Recording& recording) const {
   recording.measured = measured();
   recording.truth_space = truth_space();
   recording.counts = counts();
@@ -322,16 +244,26 @@ void RecordingReader::complete(Recording& recording) const {
   std::vector<double> time_s;
   for (const Measurement& measurement : recording.measurements) time_s.push_back(measurement.time_s);
   std::vector<bool> given;
-  for (const auto& column : log_->layout.truth) given.push_back(column.has_value());
+  for (const auto& column : layout_.truth) given.push_back(column.has_value());
   complete_velocities(*truth_space(), given, time_s, recording.truth[0].x);
 }
 
-Recording read_recording(const std::filesystem::path& path) {
-  return read_rows(RecordingReader(path));
+Recording read_recording(CsvReader csv, const RecordingOptions& options, LogFindings* findings) {
+  MeasurementLog log(std::move(csv), options);
+  Recording recording;
+  while (log.next()) log.append_to(recording);
+  log.complete(recording);
+  if (findings) *findings = log.findings();
+  return recording;
 }
 
-Recording read_recording(std::istream& stream, const std::string& name) {
-  return read_rows(RecordingReader(stream, name));
+Recording read_recording(const std::filesystem::path& path, const RecordingOptions& options, LogFindings* findings) {
+  return read_recording(with_names(CsvReader(path), options), options, findings);
+}
+
+Recording read_recording(std::istream& stream, const std::string& name, const RecordingOptions& options,
+                         LogFindings* findings) {
+  return read_recording(with_names(CsvReader(stream, name), options), options, findings);
 }
 
 std::string write_recording(const Recording& recording) {
@@ -352,12 +284,11 @@ std::string write_recording(const Recording& recording) {
   std::vector<std::string> header{"time_s"};
   header.insert(header.end(), recording.measured.begin(), recording.measured.end());
   if (has_sigma)
-    for (const std::string& name : recording.measured) header.push_back(sigma_column(name));
+    for (const std::string& name : recording.measured) header.push_back(sigma_name(name));
   if (has_sensor) header.insert(header.end(), kSensorColumns.begin(), kSensorColumns.end());
   if (has_guess) header.insert(header.end(), kGuessColumns.begin(), guess_end);
   if (has_truth)
-    for (const std::string& component : recording.truth_space->components)
-      header.push_back(std::string(kTruthPrefix) + component);
+    for (const std::string& component : recording.truth_space->components) header.push_back("truth_" + component);
 
   CsvWriter csv(header);
   for (std::size_t k = 0; k < recording.measurements.size(); ++k) {

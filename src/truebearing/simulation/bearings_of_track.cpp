@@ -51,20 +51,18 @@ Recording BearingsOfTrack::simulate(const RunKey& key) const {
   return recording;
 }
 
-Recording read_target_track(const std::filesystem::path& path, std::optional<int> number) {
-  if (!is_geographic_track(path)) {
-    if (number) throw InputError(path.string(), "holds one track", "no number of a track");
-    return read_recording(path);
+Recording read_target_track(const std::filesystem::path& path, const RecordingOptions& options) {
+  CsvReader csv = with_names(CsvReader(path), options);
+  if (!is_geographic_track(csv)) {
+    if (!options.target.empty() && !find_target_column(csv, options))
+      throw InputError(path.string(), "holds one track", "no --track-id");
+    return read_recording(std::move(csv), options);
   }
-  std::vector<Recording> tracks = read_geographic_tracks(path).recordings;
-  std::vector<int> numbers;
-  for (Recording& track : tracks) {
-    numbers.push_back(track.truth.front().track);
-    if (number ? numbers.back() == *number : tracks.size() == 1) return std::move(track);
-  }
-  throw InputError(path.string(),
-                   number ? fmt::format("has no track {}", *number) : fmt::format("has {} tracks", tracks.size()),
-                   fmt::format("the number of one: {}", fmt::join(numbers, ", ")));
+  GeographicTracks tracks = read_geographic_tracks(std::move(csv), {}, options);
+  if (tracks.recordings.size() > 1)
+    throw InputError(path.string(), fmt::format("has {} tracks", tracks.recordings.size()),
+                     fmt::format("--track-id with the name of one: {}", fmt::join(tracks.names, ", ")));
+  return std::move(tracks.recordings.front());
 }
 
 }  // namespace truebearing

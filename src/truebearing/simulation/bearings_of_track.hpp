@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "truebearing/recording/recording_options.hpp"
 #include "truebearing/simulation/bearings_only_scenario.hpp"
 
 namespace truebearing {
@@ -28,8 +29,8 @@ class BearingsOfTrack final : public Scenario {
   BearingsOnlyParameters parameters_;
 };
 
-/// A track from positions on the globe, of the vessel of that number where there are several
-/// (recording/geographic_track.hpp), or from a log with its truth. Throws InputError.
-Recording read_target_track(const std::filesystem::path& path, std::optional<int> number);
+/// A track from positions on the globe, of options.target where there are several (recording/geographic_track.hpp), or
+/// from a log with its truth. Throws InputError.
+Recording read_target_track(const std::filesystem::path& path, const RecordingOptions& options = {});
 
 }  // namespace truebearing

@@ -14,26 +14,65 @@ Measured RecordedSensor::measured() const {
   return output == Output::range_bearing ? Measured::range_bearing() : Measured::position(2);
 }
 
+namespace {
+
+bool is_range_or_bearing(const std::string& name) {
+  return name == "range_m" || name == "bearing_deg";
+}
+
+// The first measured column that does not follow from the truth; empty where all do. A frequency in the plane is the
+// source's, not what is heard.
+std::string unknown_column(const Recording& recorded) {
+  const StateSpace& space = *recorded.truth_space;
+  for (const std::string& name : recorded.measured) {
+    const bool from_plane = begins_in_plane(space) && is_range_or_bearing(name);
+    const bool is_heard = begins_in_plane(space) && name == "frequency_hz";
+    if (!from_plane && (is_heard || space.component_index(name) < 0)) return name;
+  }
+  return {};
+}
+
+bool lacks_sigma(const Recording& recorded) {
+  return std::any_of(recorded.measurements.begin(), recorded.measurements.end(),
+                     [](const Measurement& m) { return !m.is_missing() && m.sigma.size() == 0; });
+}
+
+// What a sensor without noise measures of the truth.
+double exact(const std::string& name, const StateSpace& space, const BoundedVector& x, const Measurement& measurement) {
+  if (const int component = space.component_index(name); component >= 0) return x(component);
+  Eigen::Vector2d line_of_sight_m = x.head<2>();
+  if (measurement.sensor) line_of_sight_m -= measurement.sensor->position_m;
+  return name == "range_m" ? line_of_sight_m.norm() : std::atan2(line_of_sight_m.x(), line_of_sight_m.y());
+}
+
+}  // namespace
+
+std::string reason_to_replay(const Recording& recorded) {
+  if (const std::string name = unknown_column(recorded); !name.empty())
+    return "measures " + name + ", which does not follow from its truth";
+  return lacks_sigma(recorded) ? "carries no sigma for its measurements" : "";
+}
+
+RecordedScenario RecordedScenario::replayed(Recording recorded) {
+  if (!recorded.truth_space) throw InputError("recording", "has no truth to score against", "a log with truth");
+  RecordedScenario scenario;
+  scenario.tracks_.push_back({std::move(recorded), {}});
+  return scenario;
+}
+
 RecordedScenario::RecordedScenario(Recording recorded, std::optional<double> sigma) {
   if (measures_snapshots(recorded.measured)) {
-    if (!recorded.truth_space) throw InputError("recording", "has no truth to score against", "a log with truth");
-    tracks_.push_back({std::move(recorded), {}});
+    *this = replayed(std::move(recorded));
     return;
   }
   if (!recorded.truth_space || recorded.truth.size() != 1)
     throw InputError("recording", "has no truth to measure", "a log with truth_ columns");
-  std::vector<Eigen::Index> components;  // of the truth, by component of z
-  for (const std::string& name : recorded.measured) {
-    const int component = recorded.truth_space->component_index(name);
-    if (component < 0)
-      throw InputError("recording", "measures \"" + name + "\", which is no component of its truth",
-                       suggestion(name, recorded.truth_space->components));
-    components.push_back(component);
-  }
+  if (const std::string name = unknown_column(recorded); !name.empty())
+    throw InputError("recording", "measures \"" + name + "\", which is no component of its truth",
+                     suggestion(name, recorded.truth_space->components));
   if (sigma && !(*sigma > 0.0 && std::isfinite(*sigma)))
     throw InputError("sigma", "is " + std::to_string(*sigma), "a number > 0");
-  const auto lacks_sigma = [](const Measurement& m) { return !m.is_missing() && m.sigma.size() == 0; };
-  if (!sigma && std::any_of(recorded.measurements.begin(), recorded.measurements.end(), lacks_sigma))
+  if (!sigma && lacks_sigma(recorded))
     throw InputError("recording", "carries no sigma for its measurements", "_sigma_ columns, or a sigma beside it");
 
   Track track;
@@ -44,8 +83,12 @@ RecordedScenario::RecordedScenario(Recording recorded, std::optional<double> sig
                               : BoundedVector(BoundedVector::Constant(measurement.z.size(), sigma.value_or(0.0))));
     for (Eigen::Index i = 0; i < measurement.z.size(); ++i)
       if (!std::isnan(measurement.z(i)))
-        measurement.z(i) = recorded.truth[0].x[k](components[static_cast<std::size_t>(i)]);
+        measurement.z(i) = exact(recorded.measured[static_cast<std::size_t>(i)], *recorded.truth_space,
+                                 recorded.truth[0].x[k], measurement);
   }
+  const auto bearing = std::find(recorded.measured.begin(), recorded.measured.end(), "bearing_deg");
+  if (bearing != recorded.measured.end() && begins_in_plane(*recorded.truth_space))
+    bearing_ = bearing - recorded.measured.begin();
   track.exact = std::move(recorded);
   tracks_.push_back(std::move(track));
 }
@@ -80,7 +123,7 @@ Recording RecordedScenario::simulate(const RunKey& key) const {
   recording.counts = {};
   for (std::size_t k = 0; k < recording.measurements.size(); ++k) {
     Measurement& measurement = recording.measurements[k];
-    for (Eigen::Index i = 0; i < measurement.z.size(); ++i) {
+    for (Eigen::Index i = 0; i < measurement.z.size() && !track.sigma.empty(); ++i) {
       const double noise = stream.normal();  // drawn for missing values too: the noise of step k depends on k alone
       if (std::isnan(measurement.z(i))) continue;
       measurement.z(i) += track.sigma[k](i) * noise;

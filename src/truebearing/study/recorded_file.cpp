@@ -1,5 +1,6 @@
 #include "truebearing/study/recorded_file.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <utility>
 
@@ -27,9 +28,40 @@ std::string note_of(const std::string& file, const GeographicTracks& tracks) {
                            : fmt::format(" ({} left out with fewer than {} usable rows)", tracks.left_out, kFewestRows);
   const std::string wrong_velocities =
       sum.wrong_velocities == 0 ? "" : fmt::format(", {} impossible velocities", sum.wrong_velocities);
-  return fmt::format("{}: tracks: {}{}; {} measurements, {} missing, {} of them glitches, {} repeated rows dropped{}",
+  const auto more = [](std::size_t count, const char* what) {
+    return count == 0 ? std::string() : fmt::format(", {} {}", count, what);
+  };
+  return fmt::format("{}: tracks: {}{}; {} measurements, {} missing, {} of them glitches, {} repeated rows dropped{}{}{}{}",
                      file, tracks.recordings.size(), left_out, rows, sum.missing, sum.glitches, sum.repeated,
-                     wrong_velocities);
+                     wrong_velocities, more(tracks.not_available, "not available"),
+                     more(tracks.null_island, "at 0, 0"), more(tracks.late, "late rows put in order"));
+}
+
+bool is_scored(const Recording& recording) {
+  return std::any_of(recording.truth[0].x.begin(), recording.truth[0].x.end(),
+                     [](const BoundedVector& x) { return x.allFinite(); });
+}
+
+// In which other unit the speeds would be scored, as a question; empty where in none.
+std::string unit_in_question(const GeographicTracks& tracks, const GeographicTrackOptions& options) {
+  constexpr double kLongPeriod_s = 100.0, kMilli = 1000.0;
+  const auto is_plausible = [&](double speed_mps) {
+    return speed_mps >= options.min_speed_mps && speed_mps <= options.max_speed_mps;
+  };
+  const std::vector<Measurement>& rows = tracks.recordings.front().measurements;
+  const double period_s = (rows.back().time_s - rows.front().time_s) / static_cast<double>(rows.size());
+  if (period_s >= kLongPeriod_s && is_plausible(kMilli * tracks.fastest_mps))
+    return "; are its times in milliseconds, time_ms?";
+  if (is_plausible(degrees(tracks.fastest_mps))) return "; are its angles in radians, latitude_rad?";
+  return {};
+}
+
+// Why nothing of the tracks is scored; empty where something is.
+std::string unscored_note(const GeographicTracks& tracks, const GeographicTrackOptions& options) {
+  if (std::any_of(tracks.recordings.begin(), tracks.recordings.end(), is_scored)) return {};
+  if (tracks.fastest_mps >= options.min_speed_mps) return "no step is scored: no velocity is known";
+  return fmt::format("no step is scored: all are slower than min_speed_mps = {:g} (fastest {:.3g} m/s){}",
+                     options.min_speed_mps, tracks.fastest_mps, unit_in_question(tracks, options));
 }
 
 }  // namespace
@@ -53,9 +85,23 @@ RecordedSpec read_recorded_spec(TableReader table) {
   return spec;
 }
 
+RecordingOptions read_log_table(TableReader table) {
+  RecordingOptions options;
+  if (auto columns = table.table_if_present("columns"))
+    for (const std::string& name : columns->keys()) options.columns.emplace_back(name, columns->text(name));
+  options.sort_window_s = table.number_or("sort_window_s", 0.0, kNonNegative);
+  options.target = table.text_or("track", "");
+  table.finish();
+  return options;
+}
+
 RecordedFile::RecordedFile(std::filesystem::path file, std::optional<RecordedSpec> spec, const Scenario& trained_on,
-                           std::filesystem::path study)
-    : file_(std::move(file)), spec_(std::move(spec)), trained_on_(trained_on), study_(std::move(study)) {}
+                           std::filesystem::path study, RecordingOptions options)
+    : file_(std::move(file)),
+      spec_(std::move(spec)),
+      trained_on_(trained_on),
+      study_(std::move(study)),
+      options_(std::move(options)) {}
 
 std::string RecordedFile::note() const {
   opened();
@@ -80,20 +126,42 @@ void RecordedFile::open() const {
     scenario_ = std::make_unique<RecordedScenario>(std::move(recording));
     return;
   }
-  if (!is_geographic_track(file_)) {
-    Recording recording = read_recording(file_);
-    check_measured(recording.measured, trained_on_, file_.string());
+  CsvReader csv = with_names(CsvReader(file_), options_);
+  if (is_geographic_track(csv))
+    open_positions(std::move(csv));
+  else
+    open_log(std::move(csv));
+}
+
+void RecordedFile::open_log(CsvReader csv) const {
+  const std::string name = csv.name();
+  LogFindings findings;
+  Recording recording = read_recording(std::move(csv), options_, &findings);
+  check_measured(recording.measured, trained_on_, name);
+  if (!recording.truth_space)
+    throw InputError(name, "has no truth to score against", "a log with truth_ columns, or positions on the globe");
+  const std::string found = findings.note(), reason = reason_to_replay(recording);
+  if (!found.empty()) note_ = name + ": " + found;
+  if (reason.empty()) {
     scenario_ = std::make_unique<RecordedScenario>(std::move(recording));
     return;
   }
+  note_ += fmt::format("{}{}: {}: every run replays them", note_.empty() ? "" : "\n", name, reason);
+  scenario_ = std::make_unique<RecordedScenario>(RecordedScenario::replayed(std::move(recording)));
+}
+
+void RecordedFile::open_positions(CsvReader csv) const {
+  const std::string name = csv.name();
   if (!spec_)
-    throw InputError(file_.string(), "holds positions, and the study does not say how they are measured",
+    throw InputError(name, "holds positions, and the study does not say how they are measured",
                      "a table [recorded] with position_sigma_m in " + study_.string());
   RecordedSensor sensor = spec_->sensor;
-  check_measured(sensor.measured().components, trained_on_, file_.string());
+  check_measured(sensor.measured().components, trained_on_, name);
   sensor.reported = trained_on_.reports_sigma();
-  GeographicTracks tracks = read_geographic_tracks(file_, spec_->track);
-  note_ = note_of(file_.string(), tracks);
+  GeographicTracks tracks = read_geographic_tracks(std::move(csv), spec_->track, options_);
+  note_ = note_of(name, tracks);
+  if (const std::string unscored = unscored_note(tracks, spec_->track); !unscored.empty())
+    note_ += fmt::format("\n{}: {}", name, unscored);
   scenario_ = std::make_unique<RecordedScenario>(std::move(tracks.recordings), sensor);
 }
 

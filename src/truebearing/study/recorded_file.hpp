@@ -1,5 +1,6 @@
-// A recorded track that a study is compared on: a measurement log with truth, a line array's snapshot log with truth,
-// which every run replays, or positions on the globe (recording/geographic_track.hpp), which every run measures
+// A recorded track that a study is compared on: a measurement log with truth, which every run measures afresh with the
+// log's own sigma, or replays where it carries none; a line array's snapshot log with truth, which every run replays; or
+// positions on the globe (recording/geographic_track.hpp), which every run measures
 // afresh as the study's table [recorded] says:
 //   position_sigma_m                             of a sensor that measures the position per axis; or
 //   range_sigma_m, bearing_sigma_deg, site       of one that stands `site` = [East, North] m from the track's middle
@@ -14,6 +15,7 @@
 
 #include "truebearing/io/table_reader.hpp"
 #include "truebearing/recording/geographic_track.hpp"
+#include "truebearing/recording/recording_options.hpp"
 #include "truebearing/simulation/recorded_scenario.hpp"
 
 namespace truebearing {
@@ -25,13 +27,17 @@ struct RecordedSpec {
 
 RecordedSpec read_recorded_spec(TableReader table);
 
+/// The study's table [log], which says how logs are read that it is given: `columns` = { name in the file = name here },
+/// `sort_window_s`, `track`; all optional.
+RecordingOptions read_log_table(TableReader table);
+
 class RecordedFile final : public Scenario {
  public:
   /// The file is read when it is first needed: a study is trained and applied without what it is compared on.
   /// `trained_on` says what is measured, and whether measurements carry their sigma; it must outlive this. `study` is
   /// for messages.
   RecordedFile(std::filesystem::path file, std::optional<RecordedSpec> spec, const Scenario& trained_on,
-               std::filesystem::path study);
+               std::filesystem::path study, RecordingOptions options = {});
 
   /// These throw InputError where the file is absent or at fault, or holds positions and `spec` is empty.
   Recording simulate(const RunKey& key) const override { return opened().simulate(key); }
@@ -43,11 +49,14 @@ class RecordedFile final : public Scenario {
  private:
   const Scenario& opened() const;
   void open() const;
+  void open_log(CsvReader csv) const;
+  void open_positions(CsvReader csv) const;
 
   std::filesystem::path file_;
   std::optional<RecordedSpec> spec_;
   const Scenario& trained_on_;
   std::filesystem::path study_;
+  RecordingOptions options_;
   mutable std::mutex mutex_;
   mutable std::unique_ptr<RecordedScenario> scenario_;
   mutable std::string note_;

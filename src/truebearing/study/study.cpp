@@ -65,6 +65,7 @@ void Study::read(const SharedTable& table, const std::vector<std::string>& order
   scenario_table_ = is_inside ? reader.table("scenario").raw() : read_toml_file(scenario_file_);
   scenario_ = read_scenario(TableReader(scenario_table_, scenario_file_, is_inside ? "scenario" : ""), kMoreScenarios);
   if (auto recorded = reader.table_if_present("recorded")) recorded_ = read_recorded_spec(std::move(*recorded));
+  if (auto log = reader.table_if_present("log")) log_ = read_log_table(std::move(*log));
   if (auto sets = reader.table_if_present("sets"))
     for (const std::string& set : sets->keys()) {
       const ChangedScenario changed = read_changed_scenario(*sets, set);
@@ -134,8 +135,19 @@ std::unique_ptr<Scenario> Study::scenario(const ChangedScenario& changed) const 
                        kMoreScenarios);
 }
 
+RecordingOptions Study::recording_options() const {
+  RecordingOptions options = log_;
+  if (const std::optional<Measured> measured = scenario_->measured(); measured && !measured->is_step_log())
+    options.measured = measured->components;
+  return options;
+}
+
 std::unique_ptr<Scenario> Study::recorded_scenario(const std::filesystem::path& file) const {
-  return std::make_unique<RecordedFile>(file, recorded_, *scenario_, path_);
+  return recorded_scenario(file, recording_options());
+}
+
+std::unique_ptr<Scenario> Study::recorded_scenario(const std::filesystem::path& file, RecordingOptions options) const {
+  return std::make_unique<RecordedFile>(file, recorded_, *scenario_, path_, std::move(options));
 }
 
 ComparisonOptions Study::comparison_options() const {

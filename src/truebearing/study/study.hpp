@@ -37,9 +37,12 @@ class Study {
   std::unique_ptr<Scenario> scenario(const ChangedScenario& changed) const;
   /// What they are compared on: the same, or the sets that the study names.
   std::vector<NamedScenario> evaluation_scenarios() const;
+  /// How a log that the study is given is to be read: as its table [log] says, and for what its trackers measure.
+  RecordingOptions recording_options() const;
   /// A recorded track as a scenario: a measurement log with truth, or recorded positions that are measured as the
-  /// study's [recorded] says. The study must outlive it.
+  /// study's [recorded] says; read as recording_options() says, or as is said here. The study must outlive it.
   std::unique_ptr<Scenario> recorded_scenario(const std::filesystem::path& file) const;
+  std::unique_ptr<Scenario> recorded_scenario(const std::filesystem::path& file, RecordingOptions options) const;
   std::uint64_t seed() const { return seed_; }
   std::size_t runs() const { return runs_; }
   std::size_t tuning_runs() const { return tuning_runs_; }
@@ -92,6 +95,7 @@ class Study {
   std::string scenario_file_;
   std::vector<std::pair<std::string, std::unique_ptr<Scenario>>> sets_;
   std::optional<RecordedSpec> recorded_;
+  RecordingOptions log_;
   std::uint64_t seed_ = 1;
   std::size_t runs_ = 1000;
   std::size_t tuning_runs_ = 300;

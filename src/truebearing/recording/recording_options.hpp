@@ -1,0 +1,22 @@
+// How a recorded file is to be read, where its own header does not say it all.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace truebearing {
+
+struct RecordingOptions {
+  /// What a column of the file is called here: {"rng", "range_km"}. A column without a new name is left out.
+  std::vector<std::pair<std::string, std::string>> columns;
+  /// What is to be measured, in this order: {"range_m", "bearing_deg"}; whatever the log measures where it is empty, or
+  /// where the log has none of it.
+  std::vector<std::string> measured;
+  /// The target whose rows are read, where the file has several.
+  std::string target;
+  /// Rows that come later than others of a later time are put in order where they are no more than this late.
+  double sort_window_s = 0.0;
+};
+
+}  // namespace truebearing

@@ -1,8 +1,11 @@
-// truebearing check STUDY.toml: is it valid, and what would it run.
+// truebearing check FILE: of a study, is it valid, and what would it run; of a recorded log, what it holds.
+#include <filesystem>
 #include <fmt/format.h>
 #include <memory>
 
+#include "app/check_log.hpp"
 #include "app/subcommands.hpp"
+#include "truebearing/core/error.hpp"
 #include "truebearing/study/study.hpp"
 
 namespace truebearing {
@@ -21,7 +24,13 @@ void describe_correction(const Study& study, const TrackerSpec& spec) {
   }
 }
 
-void check(const std::string& path) {
+struct CheckArguments {
+  std::string file;
+  std::string json;
+  LogArguments reading;
+};
+
+void check_study(const std::string& path) {
   const Study study = Study::load(path);
   fmt::print("{}: {} runs, seed {}, scored from step {}\n", study.name(), study.runs(), study.seed(),
              study.scoring().from_step);
@@ -39,13 +48,23 @@ void check(const std::string& path) {
   }
 }
 
+void check(const CheckArguments& options) {
+  if (std::filesystem::path(options.file).extension() != ".toml")
+    return check_log_file(options.file, options.reading, options.json);
+  if (!options.json.empty()) throw InputError("--json", "is of logs, and this is a study", "no --json");
+  check_study(options.file);
+}
+
 }  // namespace
 
 void add_check(const Subcommands& all) {
-  auto path = std::make_shared<std::string>();
-  const Subcommand command = all.add("check", "say whether a study is valid and what it would run");
-  command.argument("study", *path, "study file (TOML)").required();
-  command.runs([path] { check(*path); });
+  auto options = std::make_shared<CheckArguments>();
+  const Subcommand command = all.add(
+      "check", "say whether a study is valid and what it would run, or what a log holds and whether it can be used");
+  command.argument("file", options->file, "study file (.toml), or recorded log (CSV); - is standard input").required();
+  command.argument("--json", options->json, "write what was found in a log as JSON; - is standard output");
+  add_log_arguments(command, options->reading);
+  command.runs([options] { check(*options); });
 }
 
 }  // namespace truebearing

@@ -40,7 +40,8 @@ void run_compare(const CompareArguments& options) {
     models = train_study(study, {}, workflow);
   }
   std::unique_ptr<Scenario> recorded;
-  if (!options.truth.empty()) recorded = study.recorded_scenario(options.truth, options.reading.over(study.recording_options()));
+  if (!options.truth.empty())
+    recorded = study.recorded_scenario(options.truth, options.reading.over(study.recording_options()));
   const std::vector<NamedScenario> scenarios =
       recorded ? std::vector<NamedScenario>{{options.truth, recorded.get()}} : study.evaluation_scenarios();
   std::string notes;

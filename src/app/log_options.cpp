@@ -49,7 +49,8 @@ void add_log_arguments(const Subcommand& command, LogArguments& arguments) {
 void print_note(const std::string& log, const std::string& note) {
   constexpr std::size_t kMostShown = 186;
   if (!note.empty())
-    fmt::print(stderr, "truebearing: {}\n", shortened(printable(shortened_from_front(log, 60) + ": " + note), kMostShown));
+    fmt::print(stderr, "truebearing: {}\n",
+               shortened(printable(shortened_from_front(log, 60) + ": " + note), kMostShown));
 }
 
 }  // namespace truebearing

@@ -29,6 +29,13 @@ TEST(Suggestion, ListsNoMoreThanTwelve) {
   EXPECT_THAT(suggestion("qqqqqqqqqq", std::vector<std::string>(24, "a")), ::testing::EndsWith("a, a"));
 }
 
+TEST(Suggestion, NearMissIsASlipAndNoOtherWord) {
+  for (const char* slip : {"postion_m", "Position_M", "position-m", "psoition_m", "position_mm"})
+    EXPECT_EQ(near_miss(slip, kNames), "position_m") << slip;
+  for (const char* other : {"altitude_m", "position_error_m", "velocity", "snr_db"})
+    EXPECT_EQ(near_miss(other, kNames), "") << other;
+}
+
 TEST(Suggestion, HostileNameIsCheap) {
   EXPECT_EQ(nearest_name(std::string(100'000'000, 'q'), kNames), "");
 }

@@ -96,6 +96,65 @@ TEST(CsvReader, TextWhereANumberBelongsIsAnError) {
                 AllOf(HasSubstr("log.csv:2: b"), HasSubstr(cell), HasSubstr("valid: a number")));
 }
 
+TEST(CsvReader, WordsForMissingAreNaN) {
+  for (const char* cell : {"NA", "N/A", "null", "NULL", "None", "-", "1.#QNAN", "-1.#IND00", "1.#INF", "NaT", "#N/A"})
+    EXPECT_TRUE(std::isnan(number_of(cell))) << '"' << cell << '"';
+}
+
+TEST(CsvReader, NumbersTooSmallAreZero) {
+  EXPECT_EQ(number_of("1e-400"), 0.0);
+  EXPECT_EQ(number_of("0." + std::string(400, '0') + "1"), 0.0);
+}
+
+TEST(CsvReader, SeparatorIsTheOneThatTheHeaderHasMostOf) {
+  const Rows expected{{"a", "b"}, {"1", "2"}};
+  EXPECT_EQ(read_all("a;b\n1;2\n"), expected);
+  EXPECT_EQ(read_all("a\tb\n1\t2\n"), expected);
+  EXPECT_EQ(read_all("sep=;\r\na;b\r\n1;2\r\n"), expected);
+  EXPECT_EQ(read_all("sep=,\na,b\n1,2\n"), expected);
+  EXPECT_EQ(read_all("sep=|\na|b\n1|2\n"), expected);
+  EXPECT_EQ(read_all("a;b;c, d\n1;2;3\n")[0], (std::vector<std::string>{"a", "b", "c, d"}));
+}
+
+TEST(CsvReader, CommentsAndLineEndsOfOldAreRead) {
+  const Rows expected{{"a", "b"}, {"1", "2"}, {"3", "4"}};
+  EXPECT_EQ(read_all("# made by \"hand\"\n\na,b\n#\n1,2\n# more\n3,4\n# end"), expected);
+  EXPECT_EQ(read_all("a,b\r1,2\r3,4\r"), expected);
+  EXPECT_THAT(error_of("# one\na,b\n# two\n1\n"), HasSubstr("log.csv:4"));
+}
+
+TEST(CsvReader, DecimalCommasWhereTheCommaSeparatesNothing) {
+  const auto numbers = [](const std::string& text) {
+    std::istringstream stream(text);
+    CsvReader csv(stream, "log.csv");
+    std::vector<double> values;
+    while (csv.next()) values.push_back(csv.number(0));
+    return values;
+  };
+  EXPECT_THAT(numbers("a;b\n1,5;x\n-2,25;x\n3;x\n"), ElementsAre(1.5, -2.25, 3.0));
+  EXPECT_THAT(error_message([&] { numbers("a;b\n1,5;x\n2.5;x\n"); }), HasSubstr("log.csv:3: a"));
+  EXPECT_THAT(error_message([&] { numbers("a;b\n1.234,5;x\n"); }), HasSubstr("log.csv:2: a"));
+}
+
+TEST(CsvReader, WhatIsNoTextIsRefused) {
+  EXPECT_THAT(error_of(std::string("\xFF\xFE"
+                                   "a\0",
+                                   4)),
+              HasSubstr("UTF-16"));
+  EXPECT_THAT(error_of(std::string("a\0,\0b\0", 6)), HasSubstr("zero byte"));
+}
+
+TEST(CsvReader, LongAndWildHeadersMakeOneShortLine) {
+  for (const std::string& header :
+       {std::string(900'000, 'x') + ",b", std::string("\x1b[2J,b"), std::string("a\"\n,b")}) {
+    std::istringstream stream(header + "\n1,2\n");
+    const std::string message = error_message([&] { CsvReader(stream, "log.csv").required_column("time_s"); });
+    EXPECT_LE(message.size(), 187u);
+    EXPECT_EQ(message.find_first_of("\x1b\n"), message.npos) << message;
+    EXPECT_THAT(message, HasSubstr("log.csv"));
+  }
+}
+
 TEST(CsvReader, ErrorShowsNoControlCharactersAndNoLongText) {
   const std::string message = error_message([] { number_of("\x1b[2J" + std::string(1000, 'x')); });
   EXPECT_EQ(message.find('\x1b'), std::string::npos);

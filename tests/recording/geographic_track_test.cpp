@@ -197,7 +197,7 @@ std::string two_vessels(const char* column) {
 }
 
 TEST(GeographicTrack, InterleavedTargetsAreTrackedApart) {
-  for (const char* column : {"vessel", "flight", "track"}) {
+  for (const char* column : {"vessel", "flight", "track", "mmsi", "icao24", "callsign"}) {
     const GeographicTracks tracks = read(two_vessels(column));
     ASSERT_EQ(tracks.recordings.size(), 2u) << column;
     EXPECT_EQ(tracks.recordings[0].measurements.size(), 25u);
@@ -209,11 +209,57 @@ TEST(GeographicTrack, InterleavedTargetsAreTrackedApart) {
   }
 }
 
-TEST(GeographicTrack, TargetsAreNumbersInOneColumn) {
+TEST(GeographicTrack, TargetsAreTextsInOneColumn) {
   EXPECT_THAT(error_of("time_s,latitude_deg,longitude_deg,vessel,track\n"), HasSubstr("vessel and track"));
-  for (const char* cell : {"", "1.5", "nan"})
+  for (const char* cell : {"", "1.5", "NA"})
     EXPECT_THAT(error_of(fmt::format("time_s,latitude_deg,longitude_deg,vessel\n0,45,7,{}\n", cell)),
                 AllOf(HasSubstr("track.csv:2: vessel"), HasSubstr("integer")));
+}
+
+TEST(GeographicTrack, NamesOfTargetsAreNotNumbers) {
+  std::string text = "time_s,icao24,latitude_deg,longitude_deg\n";
+  for (int k = 0; k < 25; ++k)
+    for (const char* name : {"3e5", "300000", "4b1a2c", "40001e", "1e300", "4294967297"})
+      text += fmt::format("{},{},{},7.5\n", k, name, kLatitude_deg + k * kStep_deg);
+  EXPECT_THAT(read(text).names, ElementsAre("3e5", "300000", "4b1a2c", "40001e", "1e300", "4294967297"));
+  std::istringstream stream(text);
+  const GeographicTracks one = read_geographic_tracks(stream, "track.csv", {}, {.target = "300000"});
+  EXPECT_THAT(one.names, ElementsAre("300000"));
+  std::istringstream again(text);
+  EXPECT_THAT(error_message([&] { read_geographic_tracks(again, "track.csv", {}, {.target = "300001"}); }),
+              AllOf(HasSubstr("no track \"300001\""), HasSubstr("4b1a2c")));
+}
+
+TEST(GeographicTrack, ManyTargetsAreReadInLinearTime) {
+  std::string text = "time_s,vessel,latitude_deg,longitude_deg\n";
+  for (int k = 0; k < 200'000; ++k) text += fmt::format("0,{},45,7.5\n", k);
+  for (int k = 0; k < 20; ++k) text += fmt::format("{},a,{},7.5\n", k, kLatitude_deg + k * kStep_deg);
+  EXPECT_EQ(read(text).left_out, 200'000);
+}
+
+TEST(GeographicTrack, PositionsAtZeroZeroAreNoFix) {
+  const GeographicTracks tracks = read(northbound({{0, "0,0,0\n"}, {7, "7,0.0,-0.0\n"}}));
+  EXPECT_EQ(tracks.null_island, 2u);
+  EXPECT_TRUE(tracks.recordings.at(0).measurements[0].is_missing());
+  std::string near = "time_s,latitude_deg,longitude_deg\n";
+  for (int k = -10; k <= 10; ++k) near += fmt::format("{},{},0\n", k, k * kStep_deg);
+  EXPECT_EQ(read(near).null_island, 0u) << "it passed there";
+}
+
+TEST(GeographicTrack, LateRowsAreSortedWithinTheWindow) {
+  const std::string text = northbound({{5, row(6, 6)}, {6, row(5, 5)}});
+  EXPECT_THAT(error_of(text), AllOf(HasSubstr("track.csv:8: time_s"), HasSubstr("--sort-window 1")));
+  std::istringstream stream(text);
+  const GeographicTracks tracks = read_geographic_tracks(stream, "track.csv", {}, {.sort_window_s = 2.0});
+  EXPECT_EQ(tracks.late, 1u);
+  EXPECT_EQ(tracks.recordings.at(0).measurements[5].time_s, 5.0);
+}
+
+TEST(GeographicTrack, AnglesMayBeRadians) {
+  std::string text = "time_ms,latitude_rad,longitude_rad\n";
+  for (int k = 0; k <= 30; ++k)
+    text += fmt::format("{},{},0.13\n", 1000 * k, (kLatitude_deg + kStep_deg * k) * 0.017453292519943295);
+  EXPECT_NEAR(read(text).recordings.at(0).truth[0].x[10](3), kStep_m, 0.01);
 }
 
 TEST(GeographicTrack, TooFewRowsAreNoTrack) {

@@ -127,10 +127,12 @@ TEST(RecordingCsv, TimeMustBeThereAndFinite) {
 }
 
 TEST(RecordingCsv, ColumnWithoutAKnownUnitIsAnError) {
-  EXPECT_THAT(error_of("time_s,position\n0,1\n"), AllOf(HasSubstr("position"), HasSubstr("_deg"), HasSubstr("_mps")));
-  EXPECT_THAT(error_of("time_s,speed_kn\n0,1\n"), HasSubstr("speed_kn: names no known unit"));
-  EXPECT_THAT(error_of("time_s,_m\n0,1\n"), HasSubstr("names no known unit"));
-  EXPECT_THAT(error_of("time_s,position_m,truth_depth_ft\n0,1,1\n"), HasSubstr("truth_depth_ft"));
+  EXPECT_THAT(error_of("time_s,position\n0,1\n"),
+              AllOf(HasSubstr("position"), HasSubstr("--columns position=position_m")));
+  EXPECT_THAT(error_of("time_s,speed_furlongs\n0,1\n"), AllOf(HasSubstr("0 measured"), HasSubstr("_deg")));
+  EXPECT_THAT(error_of("time_s,_m\n0,1\n"), HasSubstr("0 measured columns"));
+  EXPECT_THAT(error_of("time_s,position_m,truth_depth_cm\n0,1,1\n"),
+              AllOf(HasSubstr("truth_depth_cm"), HasSubstr("names no known unit")));
 }
 
 TEST(RecordingCsv, SigmaMustBePositiveAndBelongToAColumn) {
@@ -139,7 +141,7 @@ TEST(RecordingCsv, SigmaMustBePositiveAndBelongToAColumn) {
                 AllOf(HasSubstr("log.csv:2: position_sigma_m"), HasSubstr("> 0")));
   EXPECT_THAT(error_of("time_s,position_m,range_sigma_m\n0,1,1\n"),
               AllOf(HasSubstr("range_sigma_m"), HasSubstr("valid: position_sigma_m")));
-  EXPECT_THAT(error_of("time_s,bearing_deg,bearing_sigma_rad\n0,1,1\n"), HasSubstr("valid: bearing_sigma_deg"));
+  EXPECT_EQ(read("time_s,bearing_deg,bearing_sigma_rad\n0,1,1\n").measurements[0].sigma(0), 1.0) << "units are told";
   EXPECT_THAT(error_of("time_s,east_m,north_m,east_sigma_m\n0,1,1,1\n"), HasSubstr("no column \"north_sigma_m\""));
 }
 
@@ -280,6 +282,144 @@ TEST(MeasurementLog, KnowsWhatHasCome) {
   ASSERT_TRUE(reader.next());
   EXPECT_FALSE(reader.next());
   EXPECT_FALSE(reader.next());
+}
+
+TEST(RecordingCsv, UnitsAreTheNames) {
+  const Recording log = read(
+      "time_ms,range_km,bearing_rad,range_sigma_ft,bearing_sigma_mrad,sensor_east_nmi,sensor_north_km,"
+      "sensor_east_kn,sensor_north_kmh,truth_east_km,truth_north_m\n1500,2,0.5,10,20,1,2,10,36,3,4\n2500,2,0.5,10,20,1,2,"
+      "10,36,3,4\n");
+  EXPECT_THAT(log.measured, ElementsAre("range_m", "bearing_deg"));
+  const Measurement& measurement = log.measurements[0];
+  EXPECT_EQ(measurement.time_s, 1.5);
+  EXPECT_DOUBLE_EQ(measurement.z(0), 2000.0);
+  EXPECT_DOUBLE_EQ(measurement.z(1), 0.5);
+  EXPECT_DOUBLE_EQ(measurement.sigma(0), 3.048);
+  EXPECT_DOUBLE_EQ(measurement.sigma(1), 0.02);
+  EXPECT_DOUBLE_EQ(measurement.sensor->position_m.x(), 1852.0);
+  EXPECT_DOUBLE_EQ(measurement.sensor->velocity_mps.x(), 10.0 * 1852.0 / 3600.0);
+  EXPECT_DOUBLE_EQ(measurement.sensor->velocity_mps.y(), 10.0);
+  EXPECT_DOUBLE_EQ(log.truth[0].x[0](0), 3000.0);
+  EXPECT_THAT(error_of("time_s,range_m,range_km\n0,1,2\n"), HasSubstr("says the same"));
+}
+
+TEST(RecordingCsv, TimesAreNumbersWithAUnitOrIsoText) {
+  const Recording iso = read("time,position_m\n2023-11-14T22:13:20Z,1\n2023-11-14T23:13:20.5+01:00,2\n");
+  EXPECT_EQ(iso.measurements[0].time_s, 1.7e9);
+  EXPECT_EQ(iso.measurements[1].time_s, 1.7e9 + 0.5);
+  EXPECT_THAT(error_of("time,position_m\n12.5,1\n"), AllOf(HasSubstr("without a unit"), HasSubstr("time=time_s")));
+  EXPECT_THAT(error_of("time_s,position_m\n0,1\n2023-11-14T22:13:20Z,2\n"), HasSubstr("log.csv:3: time_s"));
+  EXPECT_THAT(error_of("time_s,position_m\nyesterday,1\n"), AllOf(HasSubstr("yesterday"), HasSubstr("ISO 8601")));
+}
+
+std::vector<std::string> left_out(const std::string& text, const RecordingOptions& options = {}) {
+  std::istringstream stream(text);
+  LogFindings findings;
+  read_recording(stream, "log.csv", options, &findings);
+  return findings.left_out;
+}
+
+TEST(RecordingCsv, OtherColumnsAreLeftOutAndNamed) {
+  EXPECT_THAT(left_out("time_s,position_m,snr_db,remark,altitude_ft\n0,1,12,fine,300\n"),
+              ElementsAre("snr_db", "remark", "altitude_ft"));
+  EXPECT_THAT(left_out("time_s,depth_m,bearing_deg,depth_sigma_m\n0,1,12,3\n"),
+              ElementsAre("depth_m", "depth_sigma_m"));
+  EXPECT_THAT(left_out("time_s,range_m,bearing_deg,east_m\n0,1,12,3\n", {.measured = {"bearing_deg", "range_m"}}),
+              ElementsAre("east_m"));
+}
+
+TEST(RecordingCsv, WantedColumnsComeInTheirOrder) {
+  std::istringstream stream("time_s,bearing_deg,range_m\n0,90,5\n");
+  const Recording log = read_recording(stream, "log.csv", {.measured = {"range_m", "bearing_deg"}});
+  EXPECT_THAT(log.measured, ElementsAre("range_m", "bearing_deg"));
+  EXPECT_EQ(log.measurements[0].z(0), 5.0);
+}
+
+TEST(RecordingCsv, MisspeltColumnIsNotLostSilently) {
+  for (const auto& [misspelt, meant] :
+       std::vector<std::pair<std::string, std::string>>{{"bearing_dg", "bearing_deg"},
+                                                        {"Bearing_deg", "bearing_deg"},
+                                                        {"baering_deg", "bearing_deg"},
+                                                        {"frequncy_hz", "frequency_hz"},
+                                                        {"freq_hz", "frequency_hz"},
+                                                        {"range", "range_m"},
+                                                        {"sensor_eest_m", "sensor_east_m"},
+                                                        {"position_sigam_m", "position_sigma_m"}})
+    EXPECT_THAT(error_of("time_s,position_m," + misspelt + "\n0,1,2\n"),
+                AllOf(HasSubstr(misspelt), HasSubstr("did you mean \"" + meant + "\"")));
+}
+
+TEST(RecordingCsv, ColumnsMayBeGivenOtherNames) {
+  std::istringstream stream("t,rng,baering_deg\n0,2,7\n1,3,8\n");
+  const RecordingOptions options{.columns = {{"t", "time_s"}, {"rng", "range_km"}, {"baering_deg", ""}}};
+  const Recording log = read_recording(stream, "log.csv", options);
+  EXPECT_THAT(log.measured, ElementsAre("range_m"));
+  EXPECT_EQ(log.measurements[1].z(0), 3000.0);
+  std::istringstream again("t,rng\n0,2\n");
+  EXPECT_THAT(error_message([&] {
+                read_recording(again, "log.csv", {.columns = {{"rgn", "range_m"}}});
+              }),
+              AllOf(HasSubstr("no column \"rgn\""), HasSubstr("did you mean \"rng\"")));
+}
+
+TEST(RecordingCsv, OneTargetOfSeveral) {
+  const std::string text = "time_s,mmsi,range_m\n0,3e5,1\n0,300000,2\n1,3e5,3\n1,300000,4\n";
+  EXPECT_THAT(error_of(text), AllOf(HasSubstr("log.csv:3: mmsi"), HasSubstr("--track-id 3e5")));
+  std::istringstream stream(text);
+  const Recording log = read_recording(stream, "log.csv", {.target = "300000"});
+  ASSERT_EQ(log.measurements.size(), 2u);
+  EXPECT_EQ(log.measurements[1].z(0), 4.0);
+  EXPECT_EQ(read("time_s,callsign,range_m\n0,AFR12,1\n1,,2\n").measurements.size(), 2u) << "a name need not be told";
+}
+
+TEST(RecordingCsv, LateRowsAreSortedWithinTheWindow) {
+  const std::string text = "time_s,position_m\n0,0\n2,2\n1,1\n3,3\n2.5,2.5\n";
+  EXPECT_THAT(error_of(text), AllOf(HasSubstr("log.csv:4: time_s"), HasSubstr("--sort-window 1")));
+  std::istringstream stream(text);
+  LogFindings findings;
+  const Recording log = read_recording(stream, "log.csv", {.sort_window_s = 1.0}, &findings);
+  EXPECT_EQ(findings.late, 2u);
+  ASSERT_EQ(log.measurements.size(), 5u);
+  for (const Measurement& measurement : log.measurements) EXPECT_EQ(measurement.z(0), measurement.time_s);
+  for (std::size_t k = 1; k < 5; ++k) EXPECT_GT(log.measurements[k].time_s, log.measurements[k - 1].time_s);
+}
+
+TEST(RecordingCsv, StreamGivesARowBeforeTheNextOneComes) {
+  std::stringstream stream;
+  stream << "time_s,position_m\n0,0\n";
+  MeasurementLog log(CsvReader(stream, "log.csv"));
+  EXPECT_TRUE(log.next());
+  stream << "1,1\n";
+  EXPECT_TRUE(log.next()) << "the first was given without waiting for it";
+  EXPECT_EQ(log.measurement().time_s, 1.0);
+  EXPECT_FALSE(log.next());
+}
+
+TEST(RecordingCsv, WhatCannotBeIsMissingAndCounted) {
+  const auto findings_of = [](const std::string& text, int missing) {
+    std::istringstream stream(text);
+    LogFindings findings;
+    EXPECT_EQ(read_recording(stream, "log.csv", {}, &findings).counts.missing, missing) << text;
+    return findings;
+  };
+  EXPECT_EQ(findings_of("time_s,range_m,bearing_deg\n0,5,1\n1,-4,1\n", 1).impossible, 1u);
+  EXPECT_EQ(findings_of("time_s,frequency_hz\n0,50\n1,0\n2,-3\n", 2).impossible, 2u);
+  EXPECT_EQ(findings_of("time_s,bearing_deg\n0,50\n1,1e12\n", 1).impossible, 1u);
+  EXPECT_EQ(findings_of("time_s,bearing_deg\n0,350\n1,511\n2,351\n", 1).not_available, 1u);
+  EXPECT_EQ(findings_of("time_s,bearing_deg\n0,510\n1,511\n2,512\n", 0).not_available, 0u) << "turns go on";
+}
+
+TEST(RecordingCsv, AllRowsAtOneTimeAreNoLog) {
+  EXPECT_THAT(error_of("time_s,position_m\n1.7e9,1\n1.7e9,2\n1.7e9,3\n"), HasSubstr("one time, 1700000000"));
+}
+
+TEST(RecordingCsv, LongHeaderIsReadInLinearTime) {
+  std::string header = "time_s,position_m", row = "0,1";
+  for (int i = 0; i < 100'000; ++i) {
+    header += ",z_" + std::to_string(i);
+    row += ",";
+  }
+  EXPECT_EQ(left_out(header + "\n" + row + "\n").size(), 100'000u);
 }
 
 TEST(RecordingCsv, ReadsTheRecordedFlight) {

@@ -118,20 +118,21 @@ TEST(ReadTargetTrack, ChoosesAmongVesselsByTheirNumber) {
   file.close();
   const auto path = folder.path() / "ais.csv";
   const double step_m = 111230.0 * 1e-3 / 12.0;
-  const Recording chosen = read_target_track(path, 12);
+  const Recording chosen = read_target_track(path, {.target = "12"});
   EXPECT_NEAR(chosen.truth[0].x[1][1] - chosen.truth[0].x[0][1], step_m, 0.01 * step_m);
-  EXPECT_THAT(error_message([&] { read_target_track(path, std::nullopt); }),
-              AllOf(HasSubstr("2 tracks"), HasSubstr("7, 12")));
-  EXPECT_THAT(error_message([&] { read_target_track(path, 8); }), AllOf(HasSubstr("no track 8"), HasSubstr("7, 12")));
+  EXPECT_THAT(error_message([&] { read_target_track(path); }), AllOf(HasSubstr("2 tracks"), HasSubstr("7, 12")));
+  EXPECT_THAT(error_message([&] { read_target_track(path, {.target = "8"}); }),
+              AllOf(HasSubstr("no track \"8\""), HasSubstr("7, 12")));
 }
 
 TEST(ReadTargetTrack, TakesALogWithItsTruth) {
   const testing::TemporaryFolder folder;
   std::ofstream(folder.path() / "log.csv")
       << "time_s,bearing_deg,truth_east_m,truth_north_m\n0,1,10,20\n1,2,12,21\n2,3,14,22\n";
-  const Recording read = read_target_track(folder.path() / "log.csv", std::nullopt);
+  const Recording read = read_target_track(folder.path() / "log.csv");
   EXPECT_NEAR(read.truth[0].x[1][2], 2.0, 1e-9);
-  EXPECT_THAT(error_message([&] { read_target_track(folder.path() / "log.csv", 3); }), HasSubstr("one track"));
+  EXPECT_THAT(error_message([&] { read_target_track(folder.path() / "log.csv", {.target = "3"}); }),
+              HasSubstr("one track"));
 }
 
 }  // namespace

@@ -45,7 +45,8 @@ std::string near_miss(std::string_view name, const std::vector<std::string>& val
   for (const std::string& candidate : valid) {
     const std::size_t slips = candidate.size() / kLettersPerSlip;
     if (plain.size() > candidate.size() + slips || candidate.size() > plain.size() + slips) continue;
-    if (edit_distance(plain, candidate) <= slips || std::is_permutation(plain.begin(), plain.end(), candidate.begin(), candidate.end()))
+    if (edit_distance(plain, candidate) <= slips ||
+        std::is_permutation(plain.begin(), plain.end(), candidate.begin(), candidate.end()))
       return candidate;
   }
   return {};

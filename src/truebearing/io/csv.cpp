@@ -33,8 +33,8 @@ std::string_view trimmed(std::string_view text) {
 }
 
 // What other programs write where there is no number, in small letters; "nan" and "inf" are numbers to from_chars().
-constexpr std::array<std::string_view, 12> kMissing{"na",   "n/a", "#n/a", "<na>", "null", "none",
-                                                    "nil",  "nat", "\\n",  "-",    "--",   "."};
+constexpr std::array<std::string_view, 12> kMissing{"na",  "n/a", "#n/a", "<na>", "null", "none",
+                                                    "nil", "nat", "\\n",  "-",    "--",   "."};
 constexpr std::array<std::string_view, 4> kMicrosoftMissing{"1.#qnan", "1.#snan", "1.#ind", "1.#inf"};  // and zeros
 
 bool is_word_for_missing(std::string_view cell) {
@@ -244,8 +244,9 @@ void CsvReader::rename(std::span<const std::pair<std::string, std::string>> name
 }
 
 int CsvReader::column(std::string_view name) const {
-  const auto found = std::lower_bound(by_name_.begin(), by_name_.end(), name,
-                                      [&](std::size_t column, std::string_view other) { return header_[column] < other; });
+  const auto found =
+      std::lower_bound(by_name_.begin(), by_name_.end(), name,
+                       [&](std::size_t column, std::string_view other) { return header_[column] < other; });
   return found == by_name_.end() || header_[*found] != name ? -1 : static_cast<int>(*found);
 }
 

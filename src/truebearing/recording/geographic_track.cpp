@@ -57,8 +57,12 @@ LogColumn required_angle(const CsvReader& csv, const std::string& stem) {
 }
 
 FixColumns find_columns(const CsvReader& csv, const RecordingOptions& options) {
-  FixColumns columns{TimeColumn(csv), required_angle(csv, "latitude"), required_angle(csv, "longitude"),
-                     find_target_column(csv, options), std::nullopt, std::nullopt};
+  FixColumns columns{TimeColumn(csv),
+                     required_angle(csv, "latitude"),
+                     required_angle(csv, "longitude"),
+                     find_target_column(csv, options),
+                     std::nullopt,
+                     std::nullopt};
   for (const auto& [speed, course] :
        {std::pair("groundspeed", "track"), std::pair("sog", "cog"), std::pair("speed", "course")}) {
     const auto speed_column = find_column(csv, speed, Dimension::speed);
@@ -153,7 +157,8 @@ void put_in_order(Target& target) {
 std::vector<Target> read_targets(CsvReader& csv, const RecordingOptions& options, GeographicTracks& tracks) {
   FixColumns columns = find_columns(csv, options);
   if (!options.target.empty() && !columns.target)
-    throw InputError(csv.name(), "has no column that tells targets apart", "vessel, flight, track, mmsi, icao24, callsign");
+    throw InputError(csv.name(), "has no column that tells targets apart",
+                     "vessel, flight, track, mmsi, icao24, callsign");
   Targets targets;
   while (csv.next()) {
     const std::string name = read_name(csv, columns);
@@ -161,9 +166,9 @@ std::vector<Target> read_targets(CsvReader& csv, const RecordingOptions& options
     if (!options.target.empty() && name != options.target) continue;
     const Fix fix = read_fix(csv, columns, tracks.not_available);
     if (fix.time_s < target.latest_s - options.sort_window_s)
-      throw csv.error(columns.time.index(), fmt::format("is {}, earlier than {} before it", fix.time_s, target.latest_s),
-                      fmt::format("times that do not decrease, or --sort-window {:.6g} or more",
-                                  target.latest_s - fix.time_s));
+      throw csv.error(
+          columns.time.index(), fmt::format("is {}, earlier than {} before it", fix.time_s, target.latest_s),
+          fmt::format("times that do not decrease, or --sort-window {:.6g} or more", target.latest_s - fix.time_s));
     tracks.late += fix.time_s < target.latest_s;
     target.latest_s = std::max(target.latest_s, fix.time_s);
     target.fixes.push_back(fix);

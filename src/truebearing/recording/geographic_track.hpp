@@ -44,8 +44,9 @@ struct GeographicTracks {
   int left_out = 0;                ///< targets with fewer than kFewestRows usable rows
   std::size_t late = 0;            ///< rows put in order
   std::size_t not_available = 0;   ///< positions and velocities by which AIS says that there is none
-  std::size_t null_island = 0;     ///< positions at 0, 0 of a target that is nowhere near, as receivers write without a fix
-  double fastest_mps = 0.0;        ///< of all true velocities, before min_speed_mps
+  std::size_t null_island =
+      0;                     ///< positions at 0, 0 of a target that is nowhere near, as receivers write without a fix
+  double fastest_mps = 0.0;  ///< of all true velocities, before min_speed_mps
 };
 
 /// Does the header name latitude_deg or latitude_rad?

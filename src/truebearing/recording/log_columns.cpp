@@ -204,9 +204,9 @@ class LayoutReader {
         has[i] = true;
       }
     if (!columns.empty() && !(has[0] && has[1] && has[2] == has[3]))
-      layout_.faults.emplace_back(csv_.name(), fmt::format("has {} columns that do not belong together", what),
-                                  fmt::format("{}, {}, and {}, {} with them", quantities[0], quantities[1],
-                                              quantities[2], quantities[3]));
+      layout_.faults.emplace_back(
+          csv_.name(), fmt::format("has {} columns that do not belong together", what),
+          fmt::format("{}, {}, and {}, {} with them", quantities[0], quantities[1], quantities[2], quantities[3]));
     return columns;
   }
 
@@ -252,17 +252,18 @@ class LayoutReader {
                             !contains(options_.measured, column.quantity);
       if ((column.role != ColumnRole::left_out && !own_name) || is_unwanted(header, options_)) continue;
       if (const std::string meant = meant_name(csv_, column.index, known); !meant.empty()) {
-        fault(column.index, "is no known column",
-              fmt::format("did you mean \"{}\"? --columns {}={}, or {}= to leave it out", meant, header, meant, header));
+        fault(
+            column.index, "is no known column",
+            fmt::format("did you mean \"{}\"? --columns {}={}, or {}= to leave it out", meant, header, meant, header));
       }
     }
   }
 
   void check_measured_count() {
     if (!layout_.z.empty() && layout_.z.size() <= kMaxDimension) return;
-    layout_.faults.emplace_back(csv_.name(), fmt::format("has {} measured columns", layout_.z.size()),
-                                fmt::format("1 to {}, such as range_m, bearing_deg; units are {}", kMaxDimension,
-                                            all_suffixes()));
+    layout_.faults.emplace_back(
+        csv_.name(), fmt::format("has {} measured columns", layout_.z.size()),
+        fmt::format("1 to {}, such as range_m, bearing_deg; units are {}", kMaxDimension, all_suffixes()));
   }
 
   const CsvReader& csv_;

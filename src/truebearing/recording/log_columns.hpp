@@ -25,17 +25,18 @@ std::string_view to_string(ColumnRole role);
 struct LogColumn {
   std::size_t index = 0;
   ColumnRole role = ColumnRole::left_out;
-  std::string quantity;  ///< its name here: "range_m", "bearing_sigma_deg", "east_mps" of truth_east_kn; empty if left out
-  double factor = 1.0;   ///< a number of the column times this is one of the program
+  std::string
+      quantity{};  ///< its name here: "range_m", "bearing_sigma_deg", "east_mps" of truth_east_kn; empty if left out
+  double factor = 1.0;  ///< a number of the column times this is one of the program
 };
 
 /// Which column of a measurement log means what.
 struct LogLayout {
   std::vector<LogColumn> columns;  ///< all of the file
   std::vector<LogColumn> z;
-  std::vector<LogColumn> sigma;   ///< as long as z, or empty
-  std::vector<LogColumn> sensor;  ///< none, position, or position and velocity
-  std::vector<LogColumn> guess;   ///< none, range, or range and speed, with their sigmas
+  std::vector<LogColumn> sigma;                 ///< as long as z, or empty
+  std::vector<LogColumn> sensor;                ///< none, position, or position and velocity
+  std::vector<LogColumn> guess;                 ///< none, range, or range and speed, with their sigmas
   std::vector<std::optional<LogColumn>> truth;  ///< by component of the truth space
   const StateSpace* truth_space = nullptr;
   std::optional<std::size_t> target;  ///< the column that tells targets apart

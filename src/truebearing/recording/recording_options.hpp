@@ -9,12 +9,12 @@ namespace truebearing {
 
 struct RecordingOptions {
   /// What a column of the file is called here: {"rng", "range_km"}. A column without a new name is left out.
-  std::vector<std::pair<std::string, std::string>> columns;
+  std::vector<std::pair<std::string, std::string>> columns{};
   /// What is to be measured, in this order: {"range_m", "bearing_deg"}; whatever the log measures where it is empty, or
   /// where the log has none of it.
-  std::vector<std::string> measured;
+  std::vector<std::string> measured{};
   /// The target whose rows are read, where the file has several.
-  std::string target;
+  std::string target{};
   /// Rows that come later than others of a later time are put in order where they are no more than this late.
   double sort_window_s = 0.0;
 };

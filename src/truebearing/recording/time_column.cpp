@@ -48,7 +48,8 @@ double TimeColumn::read(const CsvReader& csv) {
   if (!is_number) {
     const auto seconds = seconds_of_iso_time(csv.word(index_));
     if (!seconds)
-      throw csv.error(index_, "is " + as_shown(csv.word(index_)), "a number, or an ISO 8601 time: 2026-01-31T12:00:00Z");
+      throw csv.error(index_, "is " + as_shown(csv.word(index_)),
+                      "a number, or an ISO 8601 time: 2026-01-31T12:00:00Z");
     time_s = *seconds;
   }
   if (is_text_ && *is_text_ == is_number)

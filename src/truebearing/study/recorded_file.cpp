@@ -31,10 +31,11 @@ std::string note_of(const std::string& file, const GeographicTracks& tracks) {
   const auto more = [](std::size_t count, const char* what) {
     return count == 0 ? std::string() : fmt::format(", {} {}", count, what);
   };
-  return fmt::format("{}: tracks: {}{}; {} measurements, {} missing, {} of them glitches, {} repeated rows dropped{}{}{}{}",
-                     file, tracks.recordings.size(), left_out, rows, sum.missing, sum.glitches, sum.repeated,
-                     wrong_velocities, more(tracks.not_available, "not available"),
-                     more(tracks.null_island, "at 0, 0"), more(tracks.late, "late rows put in order"));
+  return fmt::format(
+      "{}: tracks: {}{}; {} measurements, {} missing, {} of them glitches, {} repeated rows dropped{}{}{}{}", file,
+      tracks.recordings.size(), left_out, rows, sum.missing, sum.glitches, sum.repeated, wrong_velocities,
+      more(tracks.not_available, "not available"), more(tracks.null_island, "at 0, 0"),
+      more(tracks.late, "late rows put in order"));
 }
 
 bool is_scored(const Recording& recording) {

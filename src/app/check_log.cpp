@@ -1,0 +1,98 @@
+#include "app/check_log.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "app/output.hpp"
+#include "truebearing/core/error.hpp"
+#include "truebearing/core/printable.hpp"
+#include "truebearing/evaluation/text_table.hpp"
+#include "truebearing/recording/log_check.hpp"
+
+namespace truebearing {
+namespace {
+
+constexpr std::size_t kMostShown = 200, kMostColumns = 100;
+
+std::string number(double value) {
+  return std::isnan(value) ? "-" : fmt::format("{:.12g}", value);
+}
+
+std::string separator_name(char separator) {
+  return separator == '\t' ? "tab" : std::string(1, separator);
+}
+
+void print_report(const LogReport& report) {
+  fmt::print("{}: {} rows", shortened_from_front(printable(report.log), 120), report.rows);
+  if (report.targets > 0) fmt::print(" of {} targets", report.targets);
+  fmt::print(", cells separated by {}\n\n", separator_name(report.separator));
+  std::vector<std::vector<std::string>> table{{"column", "taken for", "unit", "missing", "least", "greatest"}};
+  for (std::size_t i = 0; i < std::min(report.columns.size(), kMostColumns); ++i) {
+    const ColumnReport& column = report.columns[i];
+    table.push_back({shortened(printable(column.name), 40), shortened(printable(column.taken_for), 60),
+                     column.unit.empty() ? "-" : column.unit, column.is_used ? fmt::format("{}", column.missing) : "-",
+                     number(column.least), number(column.greatest)});
+  }
+  fmt::print("{}", aligned(table));
+  if (report.columns.size() > kMostColumns) fmt::print("and {} columns more\n", report.columns.size() - kMostColumns);
+  fmt::print("\ntimes from {} to {} s; period {} s (least {}, greatest {}); {} gaps", number(report.first_s),
+             number(report.last_s), number(report.median_period_s), number(report.least_period_s),
+             number(report.greatest_period_s), report.gaps);
+  if (report.gaps > 0) fmt::print(", the longest after {} s", number(report.longest_gap_after_s));
+  fmt::print("\n{} repeated rows, {} late rows\n", report.repeated, report.late);
+  for (const std::string& oddity : report.oddities)
+    fmt::print("odd: {}\n", shortened(printable(oddity), kMostShown - 5));
+  for (const std::string& fault : report.faults) fmt::print("fault: {}\n", fault);
+  if (report.is_usable()) fmt::print("can be used\n");
+}
+
+nlohmann::ordered_json finite(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+std::string report_json(const LogReport& report) {
+  nlohmann::ordered_json json{{"log", printable(report.log)},
+                              {"usable", report.is_usable()},
+                              {"rows", report.rows},
+                              {"targets", report.targets},
+                              {"separator", std::string(1, report.separator)},
+                              {"columns", nlohmann::ordered_json::array()},
+                              {"left_out", nlohmann::ordered_json::array()}};
+  for (const ColumnReport& column : report.columns) {
+    if (!column.is_used) json["left_out"].push_back(printable(column.name));
+    json["columns"].push_back({{"name", printable(column.name)},
+                               {"taken_for", printable(column.taken_for)},
+                               {"unit", column.unit},
+                               {"missing", column.missing},
+                               {"unreadable", column.unreadable},
+                               {"least", finite(column.least)},
+                               {"greatest", finite(column.greatest)}});
+  }
+  json["time_s"] = {{"first", finite(report.first_s)}, {"last", finite(report.last_s)}};
+  json["period_s"] = {{"median", finite(report.median_period_s)},
+                      {"least", finite(report.least_period_s)},
+                      {"greatest", finite(report.greatest_period_s)}};
+  json["gaps"] = report.gaps;
+  json["late"] = report.late;
+  json["repeated"] = report.repeated;
+  json["oddities"] = nlohmann::ordered_json::array();
+  for (const std::string& oddity : report.oddities) json["oddities"].push_back(printable(oddity));
+  json["faults"] = report.faults;
+  return json.dump(2) + "\n";
+}
+
+}  // namespace
+
+void check_log_file(const std::string& path, const LogArguments& reading, const std::string& json) {
+  const LogReport report = check_log(path, reading.over({}));
+  if (json != "-") print_report(report);
+  if (!json.empty()) write_output(json, report_json(report));
+  if (!report.is_usable())
+    throw InputError(shortened_from_front(report.log, 60),
+                     fmt::format("cannot be used: {} faults", report.faults.size()),
+                     "a log that `truebearing check` finds no fault with");
+}
+
+}  // namespace truebearing

@@ -1,0 +1,14 @@
+// truebearing check LOG.csv: what a recorded log holds, and whether it can be used.
+#pragma once
+
+#include <string>
+
+#include "app/log_options.hpp"
+
+namespace truebearing {
+
+/// Prints the report, or writes it as JSON where `json` is not empty ("-" is standard output). Throws InputError where
+/// the log cannot be used.
+void check_log_file(const std::string& path, const LogArguments& reading, const std::string& json);
+
+}  // namespace truebearing

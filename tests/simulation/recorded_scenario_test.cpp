@@ -64,8 +64,31 @@ TEST(RecordedScenario, SigmaBesideItStandsInForTheLogs) {
 TEST(RecordedScenario, NeedsATruthThatHoldsWhatIsMeasured) {
   EXPECT_THAT(error_message([] { RecordedScenario(read("time_s,position_m\n0,1\n"), 1.0); }), HasSubstr("no truth"));
   EXPECT_THAT(
-      error_message([] { RecordedScenario(read("time_s,range_m,truth_east_m,truth_north_m\n0,1,2,3\n"), 1.0); }),
-      HasSubstr("range_m"));
+      error_message([] { RecordedScenario(read("time_s,position_m,truth_east_m,truth_north_m\n0,1,2,3\n"), 1.0); }),
+      HasSubstr("position_m"));
+}
+
+TEST(RecordedScenario, RangeAndBearingFollowFromATruthInThePlane) {
+  const Recording log = read(
+      "time_s,range_m,bearing_deg,range_sigma_m,bearing_sigma_deg,sensor_east_m,sensor_north_m,truth_east_m,"
+      "truth_north_m\n0,1,2,1e-9,1e-9,1000,0,4000,-4000\n");
+  EXPECT_EQ(reason_to_replay(log), "");
+  const Recording measured = RecordedScenario(log).simulate({});
+  EXPECT_NEAR(measured.measurements[0].z(0), 5000.0, 1e-6);
+  EXPECT_NEAR(measured.measurements[0].z(1), std::atan2(3000.0, -4000.0), 1e-6);
+}
+
+TEST(RecordedScenario, LogThatDoesNotSayHowGoodItIsIsReplayed) {
+  const Recording log = read("time_s,range_m,bearing_deg,truth_east_m,truth_north_m\n0,1,2,3,4\n1,,2,3,4\n");
+  EXPECT_THAT(reason_to_replay(log), HasSubstr("no sigma"));
+  const RecordedScenario scenario = RecordedScenario::replayed(log);
+  const Recording replay = scenario.simulate({1, Role::evaluation, 3});
+  EXPECT_EQ(replay.measurements[0].z, log.measurements[0].z);
+  EXPECT_EQ(replay.counts.missing, 1);
+  EXPECT_THAT(reason_to_replay(read("time_s,bearing_deg,frequency_hz,bearing_sigma_deg,frequency_sigma_hz,truth_east_m,"
+                                    "truth_north_m,truth_frequency_hz\n0,1,2,1,1,3,4,5\n")),
+              HasSubstr("frequency_hz"))
+      << "what is heard is not what the source sends";
 }
 
 // Two tracks that stand still, at (300, 400) and at (0, -1000); the second has no truth at its second step.

@@ -93,6 +93,31 @@ TEST_F(RecordedFileTest, SnapshotLogIsNoneOfAStudyThatMeasuresPositions) {
               AllOf(HasSubstr("log.h5"), HasSubstr("measures snapshots"), HasSubstr("east_m, north_m")));
 }
 
+TEST_F(RecordedFileTest, SaysWhyNothingIsScored) {
+  std::string still = "time_s,latitude_deg,longitude_deg\n", millis = still, radians = still;
+  for (int k = 0; k < 30; ++k) {
+    still += fmt::format("{},{},7.5\n", k, 45 + k * 1e-6);
+    millis += fmt::format("{},{},7.5\n", 1.7e12 + 1000.0 * k, 45 + k * 0.001);
+    radians += fmt::format("{},{},0.13\n", k, (45 + k * 0.001) * 0.017453292519943295);
+  }
+  folder_.write("one.csv", still);
+  folder_.write("millis.csv", millis);
+  folder_.write("radians.csv", radians);
+  const Study study = load(replaced(kPlaneStudy, "[recorded]", "[recorded]\nmin_speed_mps = 20.0"));
+  const auto note = [&](const char* file) { return study.recorded_scenario(folder_.path() / file)->note(); };
+  EXPECT_THAT(note("one.csv"),
+              AllOf(HasSubstr("no step is scored"), HasSubstr("min_speed_mps = 20"), HasSubstr("0.11")));
+  EXPECT_THAT(note("millis.csv"), HasSubstr("time_ms?"));
+  EXPECT_THAT(note("radians.csv"), HasSubstr("latitude_rad?"));
+}
+
+TEST_F(RecordedFileTest, LogIsReadAsTheStudySays) {
+  folder_.write("one.csv", replaced(flight(25, 45), "time_s", "t"));
+  const Study study = load(kPlaneStudy + "\n[log]\ncolumns = { t = \"time_s\" }\n");
+  EXPECT_THAT(study.recorded_scenario(folder_.path() / "one.csv")->note(), HasSubstr("25 measurements"));
+  EXPECT_THAT(error_of(kPlaneStudy + "\n[log]\nsort_windw_s = 1.0\n"), HasSubstr("did you mean \"sort_window_s\""));
+}
+
 TEST_F(RecordedFileTest, AbsentFileIsNamedWhenItIsNeeded) {
   folder_.write("one.csv", flight(25, 45));
   EXPECT_EQ(error_message([&] { load(kPlaneStudy); }), "no error") << "it can be trained without";

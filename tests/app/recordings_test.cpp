@@ -1,0 +1,89 @@
+// Recordings as they come, given to the program.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/app/program.hpp"
+
+namespace truebearing::recordings_test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using testing::is_one_line;
+using ::testing::Not;
+using testing::Outcome;
+using testing::run;
+using testing::TemporaryFolder;
+
+TEST(ProgramRecordings, CheckSaysWhatALogHolds) {
+  const TemporaryFolder folder;
+  folder.write("log.csv", "# export\ntime_ms;range_km;remark\n0;1,5;a\n1000;NA;b\n2000;1,75;c\n");
+  const Outcome text = run(folder, "check log.csv");
+  EXPECT_EQ(text.status, 0) << text.err;
+  EXPECT_THAT(text.out, AllOf(HasSubstr("measured range_m"), HasSubstr("left out"), HasSubstr("can be used")));
+  const Outcome json = run(folder, "check log.csv --json -");
+  const auto report = nlohmann::json::parse(json.out);
+  EXPECT_EQ(report["usable"], true);
+  EXPECT_EQ(report["left_out"], nlohmann::json({"remark"}));
+  EXPECT_EQ(report["columns"][1]["missing"], 1);
+  EXPECT_EQ(report["period_s"]["median"], 1.0);
+}
+
+TEST(ProgramRecordings, CheckRefusesWhatCannotBeUsed) {
+  const TemporaryFolder folder;
+  folder.write("log.csv", "time_s,bearng_deg\n0,1\n");
+  const Outcome outcome = run(folder, "check log.csv");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.out, HasSubstr("did you mean \"bearing_deg\""));
+  EXPECT_TRUE(is_one_line(outcome.err)) << outcome.err;
+}
+
+TEST(ProgramRecordings, MessagesLeaveTheTerminalAlone) {
+  const TemporaryFolder folder;
+  folder.write("wild.csv", "\x1b[31mtime\x1b]0;owned\a,position_m\n1,2\n");
+  folder.write("unit.csv", "time_s,\x1b[2Jposition\n1,2\n");
+  folder.write("long.csv", "time_s," + std::string(900'000, 'p') + "\n1,2\n");
+  folder.write("zero.csv", std::string("t\0i\0", 4));
+  for (const char* file : {"wild.csv", "unit.csv", "long.csv", "zero.csv"}) {
+    const Outcome outcome = run(folder, std::string("tma ") + file);
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_TRUE(is_one_line(outcome.err)) << outcome.err;
+    EXPECT_LE(outcome.err.size(), 201u);
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr(file), Not(HasSubstr("\x1b"))));
+  }
+}
+
+TEST(ProgramRecordings, MissingTrackIsSaidToBeMissing) {
+  const TemporaryFolder folder;
+  const Outcome outcome =
+      run(folder, std::string("simulate ") + TRUEBEARING_SOURCE_DIR +
+                      "/data/scenarios/bearings_of_a_vessel.toml --track MISSING.csv --track-id 33 -o out");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("MISSING.csv"), HasSubstr("cannot be opened")));
+}
+
+TEST(ProgramRecordings, TmaTakesOtherNamesAndUnits) {
+  const TemporaryFolder folder;
+  std::string plain = "time_s,bearing_deg,sensor_east_m,sensor_north_m,bearing_sigma_deg\n";
+  std::string other = "t\tazimuth\tsensor_east_km\tsensor_north_km\tbearing_sigma_deg\tnote\n";
+  for (int k = 0; k < 60; ++k) {
+    const double bearing_deg = 40.0 + 0.3 * k - (k > 30 ? 0.5 * (k - 30) : 0.0);
+    const int east_m = 20 * k, north_m = k > 30 ? 40 * (k - 30) : 0;
+    plain += fmt::format("{},{:.4f},{},{},1\n", 10 * k, bearing_deg, east_m, north_m);
+    other += fmt::format("{}\t{:.4f}\t{}\t{}\t1\tx\n", 10 * k, bearing_deg, 0.001 * east_m, 0.001 * north_m);
+  }
+  folder.write("plain.csv", plain);
+  folder.write("other.tsv", other);
+  const Outcome expected = run(folder, "tma plain.csv");
+  const Outcome mapped = run(folder, "tma other.tsv --columns t=time_s,azimuth=bearing_deg");
+  EXPECT_EQ(expected.status, 0) << expected.err;
+  EXPECT_EQ(mapped.status, 0) << mapped.err;
+  EXPECT_EQ(mapped.out, expected.out);
+  EXPECT_EQ(mapped.err, "truebearing: other.tsv: columns left out: note\n");
+}
+
+}  // namespace
+}  // namespace truebearing::recordings_test

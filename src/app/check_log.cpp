@@ -48,7 +48,7 @@ void print_report(const LogReport& report) {
   if (report.is_usable()) fmt::print("can be used\n");
 }
 
-nlohmann::ordered_json finite(double value) {
+nlohmann::ordered_json number_or_null(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
 
@@ -67,13 +67,13 @@ std::string report_json(const LogReport& report) {
                                {"unit", column.unit},
                                {"missing", column.missing},
                                {"unreadable", column.unreadable},
-                               {"least", finite(column.least)},
-                               {"greatest", finite(column.greatest)}});
+                               {"least", number_or_null(column.least)},
+                               {"greatest", number_or_null(column.greatest)}});
   }
-  json["time_s"] = {{"first", finite(report.first_s)}, {"last", finite(report.last_s)}};
-  json["period_s"] = {{"median", finite(report.median_period_s)},
-                      {"least", finite(report.least_period_s)},
-                      {"greatest", finite(report.greatest_period_s)}};
+  json["time_s"] = {{"first", number_or_null(report.first_s)}, {"last", number_or_null(report.last_s)}};
+  json["period_s"] = {{"median", number_or_null(report.median_period_s)},
+                      {"least", number_or_null(report.least_period_s)},
+                      {"greatest", number_or_null(report.greatest_period_s)}};
   json["gaps"] = report.gaps;
   json["late"] = report.late;
   json["repeated"] = report.repeated;

@@ -43,7 +43,7 @@ class TunedTracker {
   std::unique_ptr<Tracker> make(const std::vector<double>& logarithms) const {
     SharedTable configuration = spec_.configuration;
     for (const auto& [path, numbers] : values(logarithms)) configuration = with_numbers(*configuration, path, numbers);
-    TableReader reader(configuration, study_.path().string(), "trackers." + spec_.name);
+    TableReader reader = tracker_reader(spec_, configuration, study_.path().string());
     return make_tracker(spec_.kind, reader);
   }
 

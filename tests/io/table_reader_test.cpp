@@ -39,6 +39,23 @@ TEST(TableReader, UnknownKeySuggestsTheNearest) {
   EXPECT_THAT(message, AllOf(HasSubstr("study.toml:2: peroid_s"), HasSubstr("did you mean \"period_s\"")));
 }
 
+TEST(TableReader, WhatIsTakenOverNeedNotBeAskedFor) {
+  const SharedTable whole = parse_toml("a = 1\n[sub]\nb = 1\nc = 1\n", "study.toml");
+  const auto finish = [&](const std::string& own) {
+    return error_message([&] {
+      TableReader reader(whole, "study.toml", "", parse_toml(own, "study.toml"));
+      TableReader sub = reader.table("sub");
+      sub.number("b");
+      sub.finish();
+      reader.finish();
+    });
+  };
+  EXPECT_EQ(finish("sub = { b = 1 }"), "no error");
+  EXPECT_EQ(finish(""), "no error");
+  EXPECT_THAT(finish("sub = { c = 1 }"), HasSubstr("sub.c: is not a known key"));
+  EXPECT_THAT(finish("a = 1"), HasSubstr("a: is not a known key"));
+}
+
 TEST(TableReader, UnknownKeyInASubTableNamesItsPath) {
   const std::string message = error_of("[sensor]\nsigma = 1\n", [](TableReader& table) {
     TableReader sensor = table.table("sensor");
@@ -123,6 +140,19 @@ TEST(Toml, DotsAndBracketsInTextAreNoDepth) {
         << quote;
   EXPECT_EQ(parse_error_of("a = \"\\\"" + brackets + "\"\nb = \"\"\"\n\"\"" + brackets + "\"\"\"\n"), "no error");
   EXPECT_THAT(parse_error_of("a = \"\\\\\"\nb = " + brackets), HasSubstr("nested too deeply"));
+}
+
+// The last quotes of such a text are its own characters, not the beginning of another.
+TEST(Toml, QuotesAtTheEndOfATextHideNoDepth) {
+  std::string dotted = "a";
+  for (int i = 0; i < 130'000; ++i) dotted += ".a";
+  for (const char* text : {"\'\'\'x\'\'\'\'", "\'\'\'x\'\'\'\'\'", "\"\"\"x\"\"\"\"", "\"\"\"x\"\"\"\"\"",
+                           "\"\"\"\\\"\"\"\"", "''", "\'\'\'\'\'\'"}) {
+    const std::string before = std::string("t = ") + text + "\n";
+    EXPECT_EQ(parse_error_of(before), "no error") << text;
+    EXPECT_THAT(parse_error_of(before + dotted + " = 1"), HasSubstr("nested too deeply")) << text;
+  }
+  EXPECT_EQ(parse_error_of("t = \'\'\'x\'\'\'\'\nu = \"" + std::string(100, '.') + "\""), "no error");
 }
 
 TEST(Toml, SizeIsLimited) {

@@ -176,10 +176,75 @@ TEST(Study, StudyCanBeLikeAnotherBesideIt) {
   for (const auto& [text, says] : std::vector<std::pair<std::string, std::string>>{
            {"name = \"x\"\nlike = \"child.toml\"\n", "itself `like` another"},
            {"name = \"x\"\nlike = \"bad.toml\"\n", "itself `like` another"},
-           {"name = \"x\"\nlike = \"../small.toml\"\n", "folder"},
+           {"name = \"x\"\nlike = \"nowhere/small.toml\"\n", "nowhere/small.toml"},
            {"name = \"x\"\nlike = \"nowhere.toml\"\n", "nowhere.toml"},
            {"name = \"x\"\nlike = \"small.toml\"\nrnus = 7\n", "did you mean \"runs\""}})
     EXPECT_THAT(error_message([&] { Study::load(folder.write("bad.toml", text)); }), HasSubstr(says)) << text;
+}
+
+TEST(Study, StudyCanBeLikeOneInAnotherFolder) {
+  const TemporaryFolder folder;
+  write_study(folder, kStudy + "\n[sets]\none = \"scenario.toml\"\ntwo = { scenario = \"scenario.toml\" }\n");
+  const Study study = Study::load(folder.path() / "small.toml");
+  for (const std::string& parent : {std::string("../small.toml"), (folder.path() / "small.toml").string()}) {
+    const Study child =
+        Study::load(folder.write("inner/child.toml", "name = \"child\"\nlike = \"" + parent + "\"\nruns = 7\n"));
+    EXPECT_EQ(child.runs(), 7u);
+    EXPECT_EQ(child.evaluation_scenarios().size(), 2u);
+    EXPECT_TRUE(std::filesystem::weakly_canonical(child.parameters_path()) ==
+                std::filesystem::weakly_canonical(study.parameters_path()));
+    EXPECT_TRUE(std::filesystem::weakly_canonical(child.tracker("nfnn").correction->model) ==
+                std::filesystem::weakly_canonical(study.tracker("nfnn").correction->model));
+  }
+}
+
+TEST(Study, KeysOfTheParentsKindAreLeftBehind) {
+  const std::string other = "[trackers.other]\nlike = \"plain\"\n";
+  for (const char* changed :
+       {"start = { kind = \"two_point\" }", "start = { kind = \"one_point\", velocity_sigma_mps = 100.0 }",
+        "motion = { noise = \"discrete\", sigma_a_mps2 = 1.0 }",
+        "motion = { noise = \"continuous\", q_m2ps3 = 1.0 }"}) {
+    EXPECT_EQ(refusal("[trackers.wide]", other + changed + "\n[trackers.wide]"), "no error") << changed;
+    const std::string misspelt = std::string(changed).insert(std::string(changed).find("{ ") + 2, "tpyo = 1, ");
+    EXPECT_THAT(refusal("[trackers.wide]", other + misspelt + "\n[trackers.wide]"), HasSubstr("tpyo")) << changed;
+  }
+}
+
+TEST(Study, ChildOfAnotherStudyLeavesItsKeysBehindToo) {
+  const TemporaryFolder folder;
+  write_study(folder);
+  const auto child = [&](const std::string& start) {
+    return error_message([&] {
+      Study::load(folder.write("child.toml",
+                               "name = \"child\"\nlike = \"small.toml\"\n[trackers.wide]\nstart = " + start + "\n"));
+    });
+  };
+  EXPECT_EQ(child("{ kind = \"two_point\" }"), "no error");
+  EXPECT_THAT(child("{ kind = \"two_point\", tpyo = 1 }"), HasSubstr("tpyo"));
+}
+
+// `n` trackers, each like the one before it in the file or the one behind it.
+std::string chain(int n, bool deepest_first) {
+  std::string text;
+  const auto name = [&](int i) { return "t" + std::to_string(deepest_first ? n - i : i); };
+  for (int i = 0; i < n; ++i)
+    text += "[trackers." + name(i) + "]\nlike = \"" +
+            ((deepest_first ? i == n - 1 : i == 0) ? "plain" : name(deepest_first ? i + 1 : i - 1)) + "\"\n";
+  return text;
+}
+
+TEST(Study, LongChainsAndMuchThatIsTakenOverAreRefused) {
+  for (const bool deepest_first : {false, true}) {
+    EXPECT_EQ(refusal("[trackers.wide]", chain(32, deepest_first) + "[trackers.wide]"), "no error");
+    for (const int links : {33, 1000, 10'000})
+      EXPECT_THAT(refusal("[trackers.wide]", chain(links, deepest_first) + "[trackers.wide]"),
+                  AllOf(HasSubstr("is `like` one that is `like` another"), HasSubstr("at most 32 times")));
+  }
+  std::string many = "[trackers.full]\nlike = \"plain\"\nmuch = [0";
+  for (int i = 0; i < 10'000; ++i) many += ", 0";
+  many += "]\n";
+  for (int i = 0; i < 1000; ++i) many += "[trackers.f" + std::to_string(i) + "]\nlike = \"full\"\n";
+  EXPECT_THAT(refusal("[trackers.wide]", many + "[trackers.wide]"), HasSubstr("more than 100000 values"));
 }
 
 TEST(Study, SetsAreWhatItIsComparedOn) {

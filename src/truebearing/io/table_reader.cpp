@@ -51,8 +51,12 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
   for (std::size_t i = begin + (multi_line ? 3 : 1); i < text.size(); ++i) {
     if (text[i] == '\\' && quote == '"') {
       ++i;
-    } else if (multi_line ? text.substr(i, 3) == thrice : text[i] == quote || text[i] == '\n') {
-      return multi_line ? i + 2 : i;
+    } else if (!multi_line && (text[i] == quote || text[i] == '\n')) {
+      return i;
+    } else if (multi_line && text.substr(i, 3) == thrice) {
+      // One or two quotes more are the last characters of the string itself: '''x''''.
+      const std::size_t past = std::min(text.find_first_not_of(quote, i + 3), i + 5);
+      return std::min(past, text.size()) - 1;
     }
   }
   return text.size();
@@ -130,8 +134,8 @@ SharedTable read_toml_file(const std::filesystem::path& path) {
   return parse_toml(read_text_file(path, kMaxTomlBytes), path.string());
 }
 
-TableReader::TableReader(SharedTable table, std::string file, std::string path)
-    : table_(std::move(table)), file_(std::move(file)), path_(std::move(path)) {}
+TableReader::TableReader(SharedTable table, std::string file, std::string path, SharedTable own)
+    : table_(std::move(table)), own_(std::move(own)), file_(std::move(file)), path_(std::move(path)) {}
 
 std::string TableReader::where(const std::string& key) const {
   const toml::node* node = table_->get(key);
@@ -248,15 +252,24 @@ std::vector<std::string> TableReader::texts(const std::string& key) {
   return values;
 }
 
-TableReader TableReader::inside(const toml::table& table, std::string path) const {
-  return {SharedTable(table_, &table), file_, std::move(path)};
+TableReader TableReader::inside(const std::string& key, const toml::table& table, std::string path) const {
+  return {SharedTable(table_, &table), file_, std::move(path), own_inside(key, table)};
+}
+
+SharedTable TableReader::own_inside(const std::string& key, const toml::table& table) const {
+  static const auto kNothing = std::make_shared<const toml::table>();
+  if (!own_) return nullptr;
+  const toml::node* own = own_->get(key);
+  if (!own) return kNothing;
+  if (const auto* sub = own->as_table()) return SharedTable(own_, sub);
+  return SharedTable(table_, &table);  // of an array, which is one's own as a whole
 }
 
 TableReader TableReader::table(const std::string& key) {
   const toml::node& found = required(key);
   const auto* sub = found.as_table();
   if (!sub) throw error(key, "is " + type_name(found), "a table");
-  return inside(*sub, path_.empty() ? key : path_ + "." + key);
+  return inside(key, *sub, path_.empty() ? key : path_ + "." + key);
 }
 
 std::optional<TableReader> TableReader::table_if_present(const std::string& key) {
@@ -273,7 +286,7 @@ std::vector<TableReader> TableReader::tables(const std::string& key) {
   for (const toml::node& element : *array) {
     const auto* sub = element.as_table();
     if (!sub) throw error(key, "holds " + type_name(element), "an array of tables");
-    readers.push_back(inside(*sub, fmt::format("{}{}{}[{}]", path_, path_.empty() ? "" : ".", key, index++)));
+    readers.push_back(inside(key, *sub, fmt::format("{}{}{}[{}]", path_, path_.empty() ? "" : ".", key, index++)));
   }
   return readers;
 }
@@ -289,7 +302,8 @@ std::vector<std::string> TableReader::keys() const {
 
 void TableReader::finish() const {
   for (const std::string& key : keys())
-    if (!asked_.contains(key)) throw error(key, "is not a known key", suggestion(key, {asked_.begin(), asked_.end()}));
+    if (!asked_.contains(key) && (!own_ || own_->contains(key)))
+      throw error(key, "is not a known key", suggestion(key, {asked_.begin(), asked_.end()}));
 }
 
 std::filesystem::path TableReader::resolve(const std::string& relative) const {

@@ -30,8 +30,9 @@ SharedTable parse_toml(std::string_view text, const std::string& name);
 
 class TableReader {
  public:
-  /// `file` and `path` are what messages call the table: "study.toml", "trackers.plain".
-  TableReader(SharedTable table, std::string file, std::string path = {});
+  /// `file` and `path` are what messages call the table: "study.toml", "trackers.plain". `own`: what it says itself,
+  /// where the rest is taken over from another, of which it need not use everything.
+  TableReader(SharedTable table, std::string file, std::string path = {}, SharedTable own = nullptr);
 
   bool has(const std::string& key);
 
@@ -59,13 +60,14 @@ class TableReader {
   /// Names of all keys in this table, in the order of the file; does not count as asking for them.
   std::vector<std::string> keys() const;
 
-  /// Throws on the first key that nobody asked for.
+  /// Throws on the first key that nobody asked for and that was not taken over.
   void finish() const;
 
   /// An error about this table or one of its keys, to throw.
   InputError error(const std::string& key, const std::string& found, const std::string& valid = {}) const;
 
   const SharedTable& raw() const { return table_; }
+  const SharedTable& own() const { return own_; }
   const std::string& file() const { return file_; }
   const std::string& path() const { return path_; }
   /// Paths in a file are relative to the folder of that file.
@@ -73,10 +75,12 @@ class TableReader {
 
  private:
   const toml::node& required(const std::string& key);
-  TableReader inside(const toml::table& table, std::string path) const;
+  TableReader inside(const std::string& key, const toml::table& table, std::string path) const;
+  SharedTable own_inside(const std::string& key, const toml::table& table) const;
   std::string where(const std::string& key) const;
 
   SharedTable table_;
+  SharedTable own_;
   std::string file_;
   std::string path_;
   std::set<std::string> asked_;

@@ -20,7 +20,7 @@ std::unique_ptr<Tracker> make_part(TableReader& table, const std::string& part, 
   for (const auto& [key, value] : defaults) inherit(std::string(key.str()), &value);
   inherit("measurement", table.node("measurement"));
   if (part == "filter" && table.has("space")) inherit("space", table.node("space"));
-  TableReader reader(std::make_shared<const toml::table>(std::move(whole)), given.file(), given.path());
+  TableReader reader(std::make_shared<const toml::table>(std::move(whole)), given.file(), given.path(), given.own());
   return make_tracker(reader.text("kind"), reader);
 }
 

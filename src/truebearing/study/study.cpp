@@ -13,20 +13,6 @@ namespace {
 // Kinds of scenario that need more of the house than a simulator.
 const ScenarioKinds kMoreScenarios{{"step_logs", read_step_log_scenario}};
 
-// The trackers in the order of their file, which a merged table has lost.
-std::vector<std::string> tracker_order(const SharedTable& study, const std::filesystem::path& path) {
-  TableReader reader(study, path.string());
-  const auto trackers = reader.table_if_present("trackers");
-  return trackers ? trackers->keys() : std::vector<std::string>{};
-}
-
-// `first`, then what only `second` has.
-std::vector<std::string> joined(std::vector<std::string> first, const std::vector<std::string>& second) {
-  for (const std::string& name : second)
-    if (std::find(first.begin(), first.end(), name) == first.end()) first.push_back(name);
-  return first;
-}
-
 // Texts in a table may name files, which lie relative to its own.
 void add_texts(const toml::node& node, const std::filesystem::path& folder, std::vector<std::filesystem::path>& files) {
   if (const auto* text = node.as_string()) files.push_back(folder / text->get());
@@ -41,23 +27,13 @@ void add_texts(const toml::node& node, const std::filesystem::path& folder, std:
 Study Study::load(const std::filesystem::path& path) {
   Study study;
   study.path_ = path;
-  SharedTable table = read_toml_file(path);
-  std::vector<std::string> order = tracker_order(table, path);
-  if (TableReader reader(table, path.string()); reader.has("like")) {
-    const std::filesystem::path parent = reader.text("like");
-    if (parent.has_parent_path()) throw reader.error("like", "names a folder", "a study beside this one");
-    const SharedTable inherited = read_toml_file(path.parent_path() / parent);
-    if (inherited->contains("like")) throw reader.error("like", "names a study that is itself `like` another");
-    order = joined(tracker_order(inherited, parent), order);
-    table = std::make_shared<const toml::table>(merged(*inherited, *table));
-  }
-  study.read(table, order);
+  study.read(read_study_file(path));
   return study;
 }
 
-void Study::read(const SharedTable& table, const std::vector<std::string>& order) {
-  TableReader reader(table, path_.string());
-  reader.node("like");
+void Study::read(const StudyFile& file) {
+  TableReader reader(file.table, path_.string());
+  for (const char* elsewhere : {"like", "trackers"}) reader.node(elsewhere);
   name_ = reader.text("name");
   const toml::node* scenario = reader.node("scenario");
   const bool is_inside = scenario && scenario->is_table();
@@ -87,7 +63,7 @@ void Study::read(const SharedTable& table, const std::vector<std::string>& order
     tuning_runs_ = static_cast<std::size_t>(tuning->integer_or("runs", 300, 1, 1000000));
     tuning->finish();
   }
-  trackers_ = read_tracker_specs(reader.table("trackers"), order);
+  trackers_ = read_tracker_specs(file, path_.string());
   if (auto scoring = reader.table_if_present("scoring")) {
     std::vector<NamedScenario> compared;
     if (sets_.empty()) compared.push_back({"the scenario", scenario_.get()});

@@ -15,6 +15,7 @@
 #include "truebearing/simulation/scenario.hpp"
 #include "truebearing/study/parameters_file.hpp"
 #include "truebearing/study/recorded_file.hpp"
+#include "truebearing/study/study_file.hpp"
 #include "truebearing/study/study_scoring.hpp"
 #include "truebearing/study/tracker_spec.hpp"
 
@@ -83,7 +84,7 @@ class Study {
 
  private:
   Study() = default;
-  void read(const SharedTable& table, const std::vector<std::string>& order);
+  void read(const StudyFile& file);
   void check_trackers();
   void check_replay(const TrackerSpec& spec, const Tracker& tracker);
 

@@ -14,7 +14,7 @@ namespace truebearing {
 void Study::check_trackers() {
   for (const TrackerSpec& spec : trackers_) {
     if (!spec.correction) {
-      TableReader reader(spec.configuration, path_.string(), "trackers." + spec.name);
+      TableReader reader = tracker_reader(spec, spec.configuration, path_.string());
       ask_for_study_keys(reader);
       const std::unique_ptr<Tracker> tracker = truebearing::make_tracker(spec.kind, reader);
       check_replay(spec, *tracker);
@@ -32,7 +32,7 @@ void Study::check_trackers() {
     // Features that the records cannot give are refused here, not at the first step.
     const auto made = [&](const std::string& name) {
       const TrackerSpec& member = tracker(name.empty() ? spec.correction->design.base : name);
-      TableReader reader(member.configuration, path_.string(), "trackers." + member.name);
+      TableReader reader = tracker_reader(member, member.configuration, path_.string());
       return truebearing::make_tracker(member.kind, reader);
     };
     try {

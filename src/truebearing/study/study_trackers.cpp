@@ -52,7 +52,7 @@ std::unique_ptr<Tracker> Study::make_tracker(const std::string& name, const Corr
                                               given == models.end() ? load_model(name) : given->second,
                                               spec.correction->bounds);
   }
-  TableReader reader(configuration_of(name), path_.string(), "trackers." + name);
+  TableReader reader = tracker_reader(spec, configuration_of(name), path_.string());
   return truebearing::make_tracker(spec.kind, reader);
 }
 

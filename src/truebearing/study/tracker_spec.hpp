@@ -7,6 +7,7 @@
 
 #include "truebearing/io/table_reader.hpp"
 #include "truebearing/study/correction_spec.hpp"
+#include "truebearing/study/study_file.hpp"
 
 namespace truebearing {
 
@@ -14,13 +15,18 @@ struct TrackerSpec {
   std::string name;
   std::string kind;
   SharedTable configuration;                 ///< its table, over that of the tracker it is `like`
+  SharedTable own;                           ///< what the study's file says of it itself
   std::vector<std::string> tune;             ///< dotted paths of the numbers that `truebearing tune` fits
   bool shown = true;                         ///< false for companions that no table needs
   std::optional<CorrectionSpec> correction;  ///< where kind is "corrected"
 };
 
-/// The trackers of a study's table, in that order of their names. Throws InputError.
-std::vector<TrackerSpec> read_tracker_specs(TableReader table, const std::vector<std::string>& order);
+/// The trackers of a study, whose file messages call `name`. Throws InputError, also where they are `like` one
+/// another so often that a short file would take much memory.
+std::vector<TrackerSpec> read_tracker_specs(const StudyFile& file, const std::string& name);
+
+/// Reads its table, or the same with other numbers in it. What it has only taken over need not be of use to it.
+TableReader tracker_reader(const TrackerSpec& spec, const SharedTable& configuration, const std::string& file);
 
 std::vector<std::string> names_of(const std::vector<TrackerSpec>& trackers);
 

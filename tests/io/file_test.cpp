@@ -2,7 +2,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <fcntl.h>
+#include <sys/file.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -79,6 +82,49 @@ TEST_F(FileTest, SymbolicLinkStaysOne) {
   write_file_atomically(folder_ / "link", "new");
   EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
   EXPECT_EQ(read_text_file(folder_ / "a", kAny), "new");
+}
+
+TEST_F(FileTest, SymbolicLinkToWhatIsNotThereYetStaysOne) {
+  fs::create_directory(folder_ / "inner");
+  fs::create_symlink("inner/middle", folder_ / "link");
+  fs::create_symlink("a", folder_ / "inner/middle");
+  write_file_atomically(folder_ / "link", "text");
+  EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
+  EXPECT_TRUE(fs::is_symlink(folder_ / "inner/middle"));
+  EXPECT_EQ(read_text_file(folder_ / "inner/a", kAny), "text");
+  fs::create_symlink("circle", folder_ / "circle");
+  EXPECT_THAT(error_message([&] { write_file_atomically(folder_ / "circle", "text"); }), HasSubstr("symbolic links"));
+}
+
+TEST_F(FileTest, ModeOfTheOldFileIsKept) {
+  for (const mode_t mode : {0600u, 0640u, 0755u}) {
+    write_file_atomically(folder_ / "a", "old");
+    ASSERT_EQ(::chmod((folder_ / "a").c_str(), mode), 0);
+    write_file_atomically(folder_ / "a", "new");
+    struct stat now {};
+    ASSERT_EQ(::stat((folder_ / "a").c_str(), &now), 0);
+    EXPECT_EQ(now.st_mode & 07777u, mode);
+    EXPECT_EQ(read_text_file(folder_ / "a", kAny), "new");
+  }
+  const mode_t mask = ::umask(0027);
+  write_file_atomically(folder_ / "b", "text");
+  ::umask(mask);
+  struct stat made {};
+  ASSERT_EQ(::stat((folder_ / "b").c_str(), &made), 0);
+  EXPECT_EQ(made.st_mode & 07777u, 0640u) << "a new one has the mode that the user's mask leaves";
+}
+
+TEST_F(FileTest, WhatAKilledWriterLeftIsRemovedByTheNextRun) {
+  const fs::path left = temporary_.write(".truebearing-1-0.tmp", "half a te");
+  const fs::path at_work = temporary_.write(".truebearing-1-1.tmp", "half a te");
+  const fs::path of_others = temporary_.write(".other-1-0.tmp", "");
+  const int lock = ::open(at_work.c_str(), O_WRONLY);
+  ASSERT_EQ(::flock(lock, LOCK_EX), 0);
+  write_file_atomically(folder_ / "a", "text");
+  ::close(lock);
+  EXPECT_FALSE(fs::exists(left));
+  EXPECT_TRUE(fs::exists(at_work)) << "whoever writes it holds its lock";
+  EXPECT_TRUE(fs::exists(of_others));
 }
 
 TEST_F(FileTest, WriteThatRunsOutOfSpaceLeavesTheOldFile) {

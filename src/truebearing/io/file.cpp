@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -10,8 +11,9 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <mutex>
+#include <set>
 #include <system_error>
-#include <utility>
 
 #include "truebearing/core/error.hpp"
 
@@ -33,17 +35,24 @@ class FileDescriptor {
     if (descriptor_ >= 0) ::close(descriptor_);
   }
   int get() const { return descriptor_; }
-  /// Some file systems report a failed write only here.
-  bool close() { return ::close(std::exchange(descriptor_, -1)) == 0; }
 
  private:
   int descriptor_;
 };
 
-/// A file beside the target that is removed unless it was renamed onto it.
+constexpr const char* kTemporaryPattern = ".truebearing-*-*.tmp";
+
+/// A file beside the target that is removed unless it was renamed onto it. It is locked while it is written: one
+/// without a lock was left by a process that was killed.
 class TemporaryFile {
  public:
-  explicit TemporaryFile(const std::filesystem::path& target) : path_(unused_name(target)), file_(create(target)) {}
+  explicit TemporaryFile(const std::filesystem::path& target) : path_(unused_name(target)), file_(create(target)) {
+    // As the file that it replaces; whose owner it was, where we may.
+    struct stat old {};
+    if (::stat(target.c_str(), &old) != 0) return;
+    [[maybe_unused]] const int not_ours = ::fchown(file_.get(), old.st_uid, old.st_gid);
+    ::fchmod(file_.get(), old.st_mode & 0777);
+  }
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
   ~TemporaryFile() {
@@ -60,7 +69,7 @@ class TemporaryFile {
     return true;
   }
 
-  bool close() { return ::fsync(file_.get()) == 0 && file_.close(); }
+  bool reaches_the_disk() { return ::fsync(file_.get()) == 0; }
 
   bool rename_to(const std::filesystem::path& target) {
     renamed_ = std::rename(path_.c_str(), target.c_str()) == 0;
@@ -74,12 +83,17 @@ class TemporaryFile {
   }
 
   int create(const std::filesystem::path& target) {
-    for (;;) {
-      const int descriptor = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-      if (descriptor >= 0) return descriptor;
+    // Nobody else reads what replaces a private file.
+    const mode_t mode = ::access(target.c_str(), F_OK) == 0 ? 0600 : 0666;
+    for (;; path_ = unused_name(target)) {
+      const int descriptor = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
       // The name may be left over from a killed process that had our number.
-      if (errno != EEXIST) throw system_error(target, "written", errno);
-      path_ = unused_name(target);
+      if (descriptor < 0 && errno != EEXIST) throw system_error(target, "written", errno);
+      if (descriptor < 0) continue;
+      ::flock(descriptor, LOCK_EX);
+      struct stat made {};
+      if (::fstat(descriptor, &made) == 0 && made.st_nlink > 0) return descriptor;
+      ::close(descriptor);  // taken for one that was left, before it was locked
     }
   }
 
@@ -90,14 +104,21 @@ class TemporaryFile {
 
 namespace {
 
-/// The file that `path` leads to, so that a symbolic link stays one. Devices and directories cannot be replaced.
+/// The file that `path` leads to, there or not, so that a symbolic link stays one. Devices and folders cannot be
+/// replaced.
 std::filesystem::path replaceable_target(const std::filesystem::path& path) {
+  constexpr int kMaxLinks = 40;
+  std::filesystem::path target = path;
   std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) return path;
-  if (!std::filesystem::is_regular_file(status)) throw InputError(path.string(), "is not a regular file");
-  const std::filesystem::path target = std::filesystem::canonical(path, error);
-  return error ? path : target;
+  for (int links = 0; std::filesystem::is_symlink(target, error); ++links) {
+    if (links == kMaxLinks) throw system_error(path, "written", ELOOP);
+    target = target.parent_path() / std::filesystem::read_symlink(target, error);
+    if (error) throw system_error(path, "written", error.value());
+  }
+  const std::filesystem::file_status status = std::filesystem::status(target, error);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    throw InputError(path.string(), "is not a regular file");
+  return target;
 }
 
 /// Does the name fit the pattern, in which * is any text?
@@ -115,6 +136,32 @@ bool fits(std::string_view name, std::string_view pattern) {
     pattern.remove_prefix(next + 1);
   }
   return name.ends_with(pattern);
+}
+
+void remove_if_left(const std::filesystem::path& path) {
+  const FileDescriptor file(::open(path.c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+  if (file.get() >= 0 && ::flock(file.get(), LOCK_EX | LOCK_NB) == 0) ::unlink(path.c_str());
+}
+
+/// Temporary files that killed processes left in a folder. Looked for once: a run may write many files to one.
+void remove_left_files(const std::filesystem::path& folder) {
+  static std::mutex mutex;
+  static std::set<std::filesystem::path> seen;
+  const std::lock_guard lock(mutex);
+  std::error_code error;
+  if (!seen.insert(std::filesystem::absolute(folder, error)).second) return;
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (fits(entry->path().filename().string(), kTemporaryPattern)) remove_if_left(entry->path());
+}
+
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+  return file.has_parent_path() ? file.parent_path() : ".";
+}
+
+/// The target, beside which no temporary file of a killed process lies any more.
+std::filesystem::path without_left_files_beside(std::filesystem::path target) {
+  remove_left_files(folder_of(target));
+  return target;
 }
 
 }  // namespace
@@ -157,7 +204,7 @@ std::string read_text_file(const std::filesystem::path& path, std::size_t max_by
 
 struct FileWriter::Target {
   explicit Target(const std::filesystem::path& named)
-      : path(named), replaced(replaceable_target(named)), temporary(replaced) {}
+      : path(named), replaced(without_left_files_beside(replaceable_target(named))), temporary(replaced) {}
 
   std::filesystem::path path;
   std::filesystem::path replaced;
@@ -173,13 +220,11 @@ void FileWriter::write(std::string_view text) {
 }
 
 void FileWriter::commit() {
-  if (!target_->temporary.close() || !target_->temporary.rename_to(target_->replaced))
+  if (!target_->temporary.reaches_the_disk() || !target_->temporary.rename_to(target_->replaced))
     throw system_error(target_->path, "written", errno);
 
   // The rename is on disk once the folder is. Not every file system can do that, and the file is whole either way.
-  const std::filesystem::path& replaced = target_->replaced;
-  const FileDescriptor directory(
-      ::open(replaced.has_parent_path() ? replaced.parent_path().c_str() : ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  const FileDescriptor directory(::open(folder_of(target_->replaced).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (directory.get() >= 0) ::fsync(directory.get());
 }
 

@@ -35,8 +35,9 @@ class FileWriter {
 };
 
 /// Writes to a temporary name of its own beside `path`, flushes it to disk and renames it: after a crash, a full disk
-/// or a second writer, the file is the old one or one writer's whole text. Throws InputError; leaves nothing behind on
-/// failure.
+/// or a second writer, the file is the old one or one writer's whole text. It keeps the mode of the old one, and a
+/// symbolic link stays one, also to what is not there yet. Throws InputError; leaves nothing behind on failure, and
+/// removes what a killed process has left in that folder.
 void write_file_atomically(const std::filesystem::path& path, std::string_view text);
 
 }  // namespace truebearing

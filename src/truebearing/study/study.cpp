@@ -72,7 +72,7 @@ void Study::read(const StudyFile& file) {
   }
   reader.finish();
   files_ = {path_, scenario_file_};
-  add_texts(*table, path_.parent_path(), files_);
+  add_texts(*file.table, path_.parent_path(), files_);
   add_texts(*scenario_table_, std::filesystem::path(scenario_file_).parent_path(), files_);
   check_trackers();
 }

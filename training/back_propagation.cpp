@@ -69,7 +69,7 @@ void describe(const NormalisedRows& rows, const Eigen::VectorXd& weights, Traine
   const FuzzyNetwork::Parameters& parameters = trained.parameters;
   const Eigen::MatrixXd V = exponent_basis(rows.inputs);
   const Eigen::MatrixXd coefficients = exponent_coefficients(parameters.centres, parameters.widths);
-  NormalEquations equations(parameters.centres.rows(), rows.targets.cols());
+  ConsequentEquations equations(parameters.centres.rows(), rows.targets.cols());
   for (Eigen::Index first = 0; first < V.rows(); first += kBlockRows) {
     const Eigen::Index count = std::min(kBlockRows, V.rows() - first);
     Eigen::MatrixXd phi(count, parameters.centres.rows());

@@ -42,13 +42,13 @@ void block_strengths(const Eigen::Ref<const Eigen::MatrixXd>& V, const Eigen::Ma
   for (Eigen::Index j = 0; j < phi.cols(); ++j) phi.col(j).array() *= sum;
 }
 
-NormalEquations::NormalEquations(Eigen::Index rules, Eigen::Index outputs)
+ConsequentEquations::ConsequentEquations(Eigen::Index rules, Eigen::Index outputs)
     : strengths_squared_(Eigen::MatrixXd::Zero(rules, rules)),
       strengths_by_targets_(Eigen::MatrixXd::Zero(rules, outputs)),
       strengths_sum_(Eigen::VectorXd::Zero(rules)),
       targets_squared_(Eigen::VectorXd::Zero(outputs)) {}
 
-void NormalEquations::add(const Eigen::Ref<const Eigen::MatrixXd>& phi, const Eigen::Ref<const Eigen::MatrixXd>& T) {
+void ConsequentEquations::add(const Eigen::Ref<const Eigen::MatrixXd>& phi, const Eigen::Ref<const Eigen::MatrixXd>& T) {
   rows_ += static_cast<double>(phi.rows());
   strengths_squared_.selfadjointView<Eigen::Lower>().rankUpdate(phi.transpose());
   strengths_by_targets_.noalias() += phi.transpose() * T;
@@ -56,7 +56,7 @@ void NormalEquations::add(const Eigen::Ref<const Eigen::MatrixXd>& phi, const Ei
   targets_squared_ += T.colwise().squaredNorm().transpose();
 }
 
-Eigen::MatrixXd NormalEquations::consequents(double lambda, const Eigen::VectorXd& pair_signs) const {
+Eigen::MatrixXd ConsequentEquations::consequents(double lambda, const Eigen::VectorXd& pair_signs) const {
   const Eigen::Index M = strengths_squared_.rows();
   const double ridge = lambda * rows_ / static_cast<double>(M);
   if (pair_signs.size() == 0) {
@@ -81,15 +81,15 @@ Eigen::MatrixXd NormalEquations::consequents(double lambda, const Eigen::VectorX
   return W;
 }
 
-Eigen::VectorXd NormalEquations::usage() const {
+Eigen::VectorXd ConsequentEquations::usage() const {
   return strengths_sum_ / rows_;
 }
 
-Eigen::MatrixXd NormalEquations::local_mean() const {
+Eigen::MatrixXd ConsequentEquations::local_mean() const {
   return strengths_sum_.cwiseMax(1e-100).cwiseInverse().asDiagonal() * strengths_by_targets_;
 }
 
-Eigen::VectorXd NormalEquations::cost(const Eigen::MatrixXd& W, double lambda) const {
+Eigen::VectorXd ConsequentEquations::cost(const Eigen::MatrixXd& W, double lambda) const {
   const Eigen::MatrixXd AW = strengths_squared_.selfadjointView<Eigen::Lower>() * W;
   const Eigen::RowVectorXd residuals_squared = targets_squared_.transpose() -
                                                2.0 * W.cwiseProduct(strengths_by_targets_).colwise().sum() +
@@ -109,7 +109,7 @@ double ProjectedCost::evaluate(const Eigen::MatrixXd& U, const Eigen::MatrixXd& 
     return phi_.block(0, first / kBlockRows * rules, count, rules);
   };
 
-  NormalEquations equations(rules, T.cols());
+  ConsequentEquations equations(rules, T.cols());
   for (Eigen::Index first = 0; first < V.rows(); first += kBlockRows) {
     const Eigen::Index count = std::min(kBlockRows, V.rows() - first);
     auto phi = phi_block(first, count);

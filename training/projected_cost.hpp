@@ -27,9 +27,9 @@ void block_strengths(const Eigen::Ref<const Eigen::MatrixXd>& V, const Eigen::Ma
                      Eigen::Ref<Eigen::MatrixXd> phi);
 
 /// Phi'Phi, Phi'T and Phi'1, accumulated over blocks of rows.
-class NormalEquations {
+class ConsequentEquations {
  public:
-  NormalEquations(Eigen::Index rules, Eigen::Index outputs);
+  ConsequentEquations(Eigen::Index rules, Eigen::Index outputs);
   void add(const Eigen::Ref<const Eigen::MatrixXd>& phi, const Eigen::Ref<const Eigen::MatrixXd>& T);
   /// W (M x p) = (Phi'Phi + lambda n/M I)^-1 Phi'T, lambda > 0; the best in mirror pairs with the `pair_signs` (p) of
   /// the outputs where those are given.

@@ -138,7 +138,7 @@ void descend(const FuzzyTrainingData& data, const VariableProjectionOptions& opt
 void fit_consequents(const FuzzyTrainingData& data, double ridge, TrainedFuzzyNetwork& trained) {
   FuzzyNetwork::Parameters& parameters = trained.parameters;
   const Eigen::MatrixXd coefficients = exponent_coefficients(parameters.centres, parameters.widths);
-  NormalEquations equations(parameters.centres.rows(), data.labels.cols());
+  ConsequentEquations equations(parameters.centres.rows(), data.labels.cols());
   Eigen::MatrixXd phi;
   std::vector<Eigen::Index> rows;
   const Eigen::Index step = data.mirrored_rows() ? kBlockRows / 2 : kBlockRows;

@@ -71,11 +71,11 @@ TEST(ProjectedCost, GradientIsThatOfFiniteDifferences) {
   }
 }
 
-TEST(NormalEquations, ConsequentsMinimiseTheCostTheyReport) {
+TEST(ConsequentEquations, ConsequentsMinimiseTheCostTheyReport) {
   const Problem problem = random_problem(200, 5);
   Eigen::MatrixXd phi(200, 5);
   block_strengths(exponent_basis(problem.U), exponent_coefficients(problem.centres, problem.widths), phi);
-  NormalEquations equations(5, 2);
+  ConsequentEquations equations(5, 2);
   equations.add(phi.topRows(120), problem.T.topRows(120));
   equations.add(phi.bottomRows(80), problem.T.bottomRows(80));
   const double lambda = 0.1;

@@ -32,8 +32,15 @@ std::optional<typename PosteriorInformation<States>::Matrix> PosteriorInformatio
   return Matrix(scale.asDiagonal() * P * scale.asDiagonal());
 }
 
-template class PosteriorInformation<2>;
-template class PosteriorInformation<4>;
-template class PosteriorInformation<Eigen::Dynamic>;
+// Member by member: some compilers would instantiate what the class has for other sizes only.
+template void PosteriorInformation<2>::add_prior(const Matrix&);
+template void PosteriorInformation<2>::predict(const Matrix&, const Matrix&);
+template std::optional<Eigen::Matrix2d> PosteriorInformation<2>::covariance() const;
+template void PosteriorInformation<4>::add_prior(const Matrix&);
+template void PosteriorInformation<4>::predict(const Matrix&, const Matrix&);
+template std::optional<Eigen::Matrix4d> PosteriorInformation<4>::covariance() const;
+template void PosteriorInformation<Eigen::Dynamic>::add_prior(const Matrix&);
+template void PosteriorInformation<Eigen::Dynamic>::predict(const Matrix&, const Matrix&);
+template std::optional<Eigen::MatrixXd> PosteriorInformation<Eigen::Dynamic>::covariance() const;
 
 }  // namespace truebearing

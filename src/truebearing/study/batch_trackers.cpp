@@ -74,7 +74,7 @@ std::unique_ptr<Tracker> make_bearings_batch(TableReader& table) {
   options.sigma_rad = radians(measurement.number("bearing_sigma_deg", {0.0, 90.0, true}));
   options.sigma_factor = measurement.number_or("sigma_factor", 1.0, kPositive);
   if (has_frequency) {
-    BearingsBatchOptions::Frequency& frequency = options.frequency.emplace();
+    BatchFrequencyOptions& frequency = options.frequency.emplace();
     frequency.sigma_hz = measurement.number("frequency_sigma_hz", kPositive);
     frequency.sound_mps = measurement.number_or("sound_mps", kSoundInWater_mps, kPositive);
     frequency.changes = read_changes(table);

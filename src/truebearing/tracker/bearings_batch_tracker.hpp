@@ -21,19 +21,20 @@
 
 namespace truebearing {
 
+/// The use of frequencies, not with Cho's methods. Own ship's velocity has to come with each.
+struct BatchFrequencyOptions {
+  double sigma_hz = 0.0;  ///< where a measurement carries none
+  double sound_mps = kSoundInWater_mps;
+  FrequencyChangeOptions changes;
+};
+
 struct BearingsBatchOptions {
   std::variant<TargetMotionBatchOptions, ChoOptions> method;
   /// Maximum a posteriori instead of maximum likelihood. Without a guess that it needs nothing is solved.
   std::optional<std::variant<RangePrior, VelocityPrior>> prior;
   double sigma_rad = 0.0;     ///< where a measurement carries none
   double sigma_factor = 1.0;  ///< of bearings and frequencies
-  /// The use of frequencies, not with Cho's methods. Own ship's velocity has to come with each.
-  struct Frequency {
-    double sigma_hz = 0.0;  ///< where a measurement carries none
-    double sound_mps = kSoundInWater_mps;
-    FrequencyChangeOptions changes;
-  };
-  std::optional<Frequency> frequency;
+  std::optional<BatchFrequencyOptions> frequency;
   double window_s = std::numeric_limits<double>::infinity();
   /// Solve at the first step at or after each of these; else every so many seconds, 0: at every step.
   std::vector<double> solve_at_s;

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <hdf5.h>
 #include <sys/stat.h>
 
 #include <thread>
@@ -80,11 +81,118 @@ TEST(Hdf5File, ErrorsNameFileAndDataset) {
   EXPECT_THAT(error_message([&] { Hdf5Reader folder_of_files(folder.path()); }), HasSubstr("not a regular file"));
 }
 
-// HDF5 1.10 may complain at exit that it cannot close what it found damaged.
+std::vector<double> read_all(const std::filesystem::path& path, const std::string& dataset = "snapshots") {
+  const Hdf5Reader reader(path);
+  std::size_t size = 1;
+  for (const std::uint64_t length : reader.shape(dataset)) size *= length;
+  reader.check_holds(dataset, size);
+  std::vector<double> values(size);
+  reader.read(dataset, values);
+  reader.attribute(dataset, "spacing_wavelengths");
+  return values;
+}
+
+// In the first libhdf5 itself runs into a fault, in the second it reads past the end of a block.
+TEST(Hdf5File, FilesThatTheLibraryDoesNotSurviveAreErrors) {
+  const std::filesystem::path folder = std::filesystem::path(TRUEBEARING_SOURCE_DIR) / "tests/io/hostile";
+  EXPECT_THAT(error_message([&] { read_all(folder / "segmentation_fault.h5", "time_s"); }),
+              HasSubstr("segmentation_fault.h5: time_s"));
+  EXPECT_THAT(error_message([&] { read_all(folder / "heap_over_read.h5"); }), HasSubstr("heap_over_read.h5"));
+}
+
+TEST(Hdf5File, RoomWithoutNumbersIsRefusedBeforeItTakesMemory) {
+  const std::filesystem::path folder = std::filesystem::path(TRUEBEARING_SOURCE_DIR) / "tests/io/hostile";
+  EXPECT_THAT(error_message([&] { read_all(folder / "two_gigabytes_of_nothing.h5"); }),
+              AllOf(HasSubstr("snapshots: has room for"), HasSubstr("of which the file holds fewer")));
+}
+
+// A file whose dataset `snapshots` is 4 numbers made by `make`.
+template <typename Make>
+std::filesystem::path file_with(const TemporaryFolder& folder, const Make& make) {
+  const std::filesystem::path path = folder.path() / "log.h5";
+  const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  const hsize_t size = 4;
+  const hid_t space = H5Screate_simple(1, &size, nullptr);
+  const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
+  make(file, space, properties);
+  H5Pclose(properties);
+  H5Sclose(space);
+  H5Fclose(file);
+  return path;
+}
+
+hid_t add_snapshots(hid_t file, hid_t space, hid_t properties) {
+  return H5Dcreate2(file, "snapshots", H5T_IEEE_F64LE, space, H5P_DEFAULT, properties, H5P_DEFAULT);
+}
+
+TEST(Hdf5File, NumbersInOtherFilesAreRefused) {
+  const TemporaryFolder folder;
+  const std::filesystem::path other = folder.write("other.h5", two_rows());
+  const std::filesystem::path pipe = folder.path() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::filesystem::path& external : {other, pipe}) {
+    const auto path = file_with(folder, [&](hid_t file, hid_t space, hid_t properties) {
+      H5Pset_external(properties, external.c_str(), 0, 32);
+      H5Dclose(add_snapshots(file, space, properties));
+    });
+    EXPECT_THAT(error_message([&] { read_all(path); }), HasSubstr("snapshots: is stored in other files"));
+  }
+  const auto linked = file_with(folder, [&](hid_t file, hid_t, hid_t) {
+    H5Lcreate_external(other.c_str(), "data", file, "snapshots", H5P_DEFAULT, H5P_DEFAULT);
+  });
+  EXPECT_THAT(error_message([&] { read_all(linked); }), AllOf(HasSubstr("log.h5: snapshots"), HasSubstr("external")));
+  const auto softly = file_with(folder, [&](hid_t file, hid_t, hid_t) {
+    H5Lcreate_external(other.c_str(), "/", file, "outside", H5P_DEFAULT, H5P_DEFAULT);
+    H5Lcreate_soft("/outside/data", file, "snapshots", H5P_DEFAULT, H5P_DEFAULT);
+  });
+  EXPECT_THAT(error_message([&] { read_all(softly); }), HasSubstr("log.h5: snapshots"));
+}
+
+TEST(Hdf5File, VirtualDatasetIsRefused) {
+  const TemporaryFolder folder;
+  const std::filesystem::path other = folder.write("other.h5", two_rows());
+  const auto path = file_with(folder, [&](hid_t file, hid_t space, hid_t properties) {
+    H5Pset_virtual(properties, space, other.c_str(), "data", space);
+    H5Dclose(add_snapshots(file, space, properties));
+  });
+  EXPECT_THAT(error_message([&] { read_all(path); }), HasSubstr("snapshots: is stored in other files"));
+}
+
+// What other programs write: in chunks, compressed, behind a link within the file.
+TEST(Hdf5File, ChunksCompressionAndLinksWithinTheFileAreRead) {
+  const TemporaryFolder folder;
+  const std::vector<double> numbers{1, 2, 3, 4};
+  const auto path = file_with(folder, [&](hid_t file, hid_t space, hid_t properties) {
+    const hsize_t chunk = 3;
+    H5Pset_chunk(properties, 1, &chunk);
+    H5Pset_deflate(properties, 9);
+    const hid_t data = H5Dcreate2(file, "elsewhere", H5T_IEEE_F32BE, space, H5P_DEFAULT, properties, H5P_DEFAULT);
+    H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data());
+    H5Dclose(data);
+    H5Lcreate_soft("/elsewhere", file, "snapshots", H5P_DEFAULT, H5P_DEFAULT);
+  });
+  EXPECT_EQ(read_all(path), numbers);
+}
+
+TEST(Hdf5File, MoreNumbersThanOneBufferHolds) {
+  const TemporaryFolder folder;
+  Hdf5Writer writer("many");
+  constexpr std::uint64_t kRows = 5, kColumns = 600'000;
+  writer.add("snapshots", {kRows, kColumns});
+  std::vector<double> row(kColumns);
+  for (std::uint64_t k = 0; k < kRows; ++k) {
+    for (std::uint64_t i = 0; i < kColumns; ++i) row[i] = static_cast<double>(k * kColumns + i);
+    writer.write_row("snapshots", k, row);
+  }
+  const std::vector<double> values = read_all(folder.write("many.h5", writer.str()));
+  ASSERT_EQ(values.size(), kRows * kColumns);
+  for (std::size_t i = 0; i < values.size(); ++i) ASSERT_EQ(values[i], static_cast<double>(i));
+}
+
 TEST(Hdf5File, AlteredBytesGiveNumbersOrAnError) {
   const TemporaryFolder folder;
   const std::string whole = two_rows();
-  for (std::size_t i = 0; i < whole.size(); i += 5) {
+  for (std::size_t i = 0; i < whole.size(); i += 21) {
     std::string altered = whole;
     altered[i] = static_cast<char>(altered[i] ^ 0x55);
     const std::filesystem::path path = folder.write("a.h5", altered);

@@ -1,15 +1,20 @@
 // HDF5 files as far as the house needs them: named datasets of numbers, with numbers as their attributes. Written in
-// memory, so that a file appears whole (io/file.hpp) and has the same bytes whenever it holds the same numbers.
+// memory, so that a file appears whole (io/file.hpp) and has the same bytes whenever it holds the same numbers. Read
+// in a process of its own (io/limited_child.hpp), since libhdf5 does not survive every damaged file; links and storage that
+// lead to other files are refused.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace truebearing {
+
+class LimitedChild;
 
 /// False where there is no file, and for pipes, which can be read only once.
 bool is_hdf5_file(const std::filesystem::path& path);
@@ -25,6 +30,8 @@ class Hdf5Reader {
   bool has(const std::string& dataset) const;
   /// The lengths of its dimensions, of which there are none where it is a lone number.
   std::vector<std::uint64_t> shape(const std::string& dataset) const;
+  /// Throws unless the file holds so many numbers in it: to be asked before they are given memory.
+  void check_holds(const std::string& dataset, std::uint64_t size) const;
   /// All its numbers, integers or floats of any width, the last dimension running fastest; as many as `values` has.
   void read(const std::string& dataset, std::span<double> values) const;
   /// Nothing where there is none of that name.
@@ -35,7 +42,7 @@ class Hdf5Reader {
 
  private:
   std::string name_;
-  std::int64_t file_;
+  std::unique_ptr<LimitedChild> process_;  ///< which has the file open
 };
 
 class Hdf5Writer {

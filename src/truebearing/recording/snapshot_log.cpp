@@ -157,6 +157,7 @@ struct TruthTable {
 };
 
 std::vector<double> read_degrees(const Hdf5Reader& file, const char* name, std::size_t size) {
+  file.check_holds(name, size);
   std::vector<double> values(size);
   file.read(name, values);
   for (double& value : values) value = std::isfinite(value) ? radians(value) : kNaN;
@@ -194,7 +195,9 @@ TruthTable read_truth(const Hdf5Reader& file, const std::vector<double>& time_s)
 }
 
 std::vector<Complex> read_values(const Hdf5Reader& file, const SnapshotLayout& layout) {
-  std::vector<Complex> values(layout.intervals * layout.values_per_interval());
+  const std::size_t size = layout.intervals * layout.values_per_interval();
+  file.check_holds(kSnapshots, 2 * size);
+  std::vector<Complex> values(size);
   // A complex number is an array of its two parts: [complex.numbers.general].
   file.read(kSnapshots, {reinterpret_cast<double*>(values.data()), 2 * values.size()});
   for (Complex& value : values)

@@ -5,6 +5,7 @@ function(truebearing_options target)
                                            $<$<BOOL:${TRUEBEARING_WARNINGS_AS_ERRORS}>:-Werror>)
   # The same bits on every build of one machine: no contraction into fused multiply-adds, whatever -march says.
   target_compile_options(${target} PRIVATE -ffp-contract=off -fno-math-errno)
+  truebearing_harden(${target})
   if(TRUEBEARING_SANITIZE)
     # Left out are the four checks of every pointer, which double the time to compile Eigen; the address sanitizer
     # sees the accesses themselves.
@@ -12,7 +13,28 @@ function(truebearing_options target)
                            -fno-sanitize=null,alignment,object-size,vptr -fno-sanitize-recover=all
                                              -fno-omit-frame-pointer)
     target_link_options(${target} PUBLIC -fsanitize=${TRUEBEARING_SANITIZE})
-    target_compile_definitions(${target} PRIVATE TRUEBEARING_PRODUCTS_AS_LOOPS)  # filter/product.hpp
+    target_compile_definitions(${target} PRIVATE TRUEBEARING_PRODUCTS_AS_LOOPS  # filter/product.hpp
+                                                 _GLIBCXX_ASSERTIONS)
+  endif()
+endfunction()
+
+# truebearing_harden(TARGET): what makes a slip that a hostile file finds end the program instead of serving the file:
+# guarded stacks, checked copies, addresses that nobody knows beforehand, tables that are read-only once it runs.
+function(truebearing_harden target)
+  target_compile_options(${target} PRIVATE -fstack-protector-strong)
+  target_link_options(${target} PRIVATE -Wl,-z,relro,-z,now)
+  get_target_property(type ${target} TYPE)
+  if(type MATCHES "STATIC|SHARED")
+    # In a static library too, so that a plugin can hold it. Our own calls stay direct, as in a program.
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    target_compile_options(${target} PRIVATE -fno-semantic-interposition)
+  else()
+    target_compile_options(${target} PRIVATE -fPIE)
+    target_link_options(${target} PRIVATE -pie)
+  endif()
+  if(NOT TRUEBEARING_SANITIZE)  # which checks more by itself
+    target_compile_options(${target} PRIVATE
+      $<$<CONFIG:Release,RelWithDebInfo,MinSizeRel>:-U_FORTIFY_SOURCE;-D_FORTIFY_SOURCE=2>)
   endif()
 endfunction()
 

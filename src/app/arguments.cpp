@@ -67,6 +67,11 @@ Argument Argument::needs(const Argument& other) const {
   return *this;
 }
 
+Argument Argument::read_as(std::function<std::string(std::string)> meaning) const {
+  option_->transform(meaning, "");
+  return *this;
+}
+
 Argument Argument::default_shown() const {
   option_->capture_default_str();
   return *this;

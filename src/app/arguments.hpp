@@ -25,6 +25,8 @@ class Argument {
   Argument non_negative() const;
   /// Refused without `other`.
   Argument needs(const Argument& other) const;
+  /// The value is what `meaning` makes of what was written.
+  Argument read_as(std::function<std::string(std::string)> meaning) const;
   /// --help says which value stands where none is given.
   Argument default_shown() const;
 

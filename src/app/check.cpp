@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "app/check_log.hpp"
+#include "app/data_folder.hpp"
 #include "app/subcommands.hpp"
 #include "truebearing/core/error.hpp"
 #include "truebearing/study/study.hpp"
@@ -61,7 +62,12 @@ void add_check(const Subcommands& all) {
   auto options = std::make_shared<CheckArguments>();
   const Subcommand command = all.add(
       "check", "say whether a study is valid and what it would run, or what a log holds and whether it can be used");
-  command.argument("file", options->file, "study file (.toml), or recorded log (CSV); - is standard input").required();
+  command
+      .argument("file", options->file,
+                "study file (.toml), or the name of one that comes with the program; or recorded log (CSV); - is "
+                "standard input")
+      .required()
+      .read_as(study_file);
   command.argument("--json", options->json, "write what was found in a log as JSON; - is standard output");
   add_log_arguments(command, options->reading);
   command.runs([options] { check(*options); });

@@ -10,6 +10,7 @@
 #include <system_error>
 #include <unistd.h>
 
+#include "app/data_folder.hpp"
 #include "app/output.hpp"
 #include "app/subcommands.hpp"
 #include "truebearing/core/error.hpp"
@@ -32,7 +33,7 @@ int fail(const std::string& what) {
 // Help, the version, or what is wrong with the usage.
 int finish(CLI::App& app, const CLI::ParseError& error) {
   const bool wrong = app.exit(error) != 0;
-  if (!std::cout.flush()) return fail("standard output: cannot be written");
+  if (!std::cout.flush() || std::fflush(stdout) != 0) return fail("standard output: cannot be written");
   return wrong ? 2 : 0;
 }
 
@@ -41,6 +42,14 @@ int finish(CLI::App& app, const CLI::ParseError& error) {
 int command_line(int argc, const char* const* argv) {
   CLI::App app{"Trackers that learn to correct themselves.", "truebearing"};
   app.set_version_flag("--version", TRUEBEARING_VERSION);
+  app.add_flag_callback(
+         "--data-dir",
+         [] {
+           fmt::print("{}\n", data_folder().string());
+           throw CLI::Success();
+         },
+         "Display the folder of the scenarios, studies and models that come with the program and exit")
+      ->trigger_on_parse();
   app.require_subcommand(1);
   const Subcommands all{app};
   add_simulate(all);

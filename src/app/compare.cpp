@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "app/data_folder.hpp"
 #include "app/log_options.hpp"
 #include "app/output.hpp"
 #include "app/subcommands.hpp"
@@ -74,7 +75,7 @@ void run_compare(const CompareArguments& options) {
 void add_compare(const Subcommands& all) {
   auto options = std::make_shared<CompareArguments>();
   const Subcommand command = all.add("compare", "run the study's trackers on held-out runs and compare their errors");
-  command.argument("study", options->study, "study file (TOML)").required();
+  add_study(command, options->study);
   command.argument("--seed", options->seed, "seed; the study's own where not given");
   command.argument("--runs", options->runs, "runs; the study's own number where not given").within(1, 10000000);
   command.argument("--threads", options->threads, "0: one per core").within(0, 1024);

@@ -7,6 +7,7 @@
 #include <system_error>
 #include <vector>
 
+#include "app/data_folder.hpp"
 #include "app/output.hpp"
 #include "app/subcommands.hpp"
 #include "truebearing/core/error.hpp"
@@ -85,7 +86,7 @@ void simulate(const SimulateArguments& options) {
 void add_simulate(const Subcommands& all) {
   auto options = std::make_shared<SimulateArguments>();
   const Subcommand command = all.add("simulate", "write measurement logs with truth");
-  command.argument("scenario", options->scenario, "scenario file (TOML)").required();
+  add_scenario(command, options->scenario);
   command.argument("-o,--output", options->folder, "folder for run_0000.csv, run_0001.csv, ... (.h5 of a line array)")
       .required();
   command.argument("--seed", options->seed, "seed of the random streams").default_shown();

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/data_folder.hpp"
 #include "app/log_options.hpp"
 #include "app/output.hpp"
 #include "app/subcommands.hpp"
@@ -365,7 +366,7 @@ void track(const TrackArguments& options) {
 void add_track(const Subcommands& all) {
   auto options = std::make_shared<TrackArguments>();
   const Subcommand command = all.add("track", "run the study's trackers on a recorded log");
-  command.argument("study", options->study, "study file (TOML)").required();
+  add_study(command, options->study);
   command
       .argument("log", options->log,
                 "measurement log (CSV, or HDF5 of a line array), or step log where the study's scenario is of those; "

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/data_folder.hpp"
 #include "app/output.hpp"
 #include "app/subcommands.hpp"
 #include "app/workflow.hpp"
@@ -53,7 +54,7 @@ void train(const TrainArguments& options) {
 void add_train(const Subcommands& all) {
   auto options = std::make_shared<TrainArguments>();
   const Subcommand command = all.add("train", "train the corrections of a study and write their model files");
-  command.argument("study", options->study, "study file (TOML)").required();
+  add_study(command, options->study);
   command.argument("-o,--output", options->output, "model file; the one that the study names where not given");
   command.argument("--tracker", options->trackers, "only these corrected trackers");
   command.argument("--seed", options->seed, "seed; the study's own where not given");

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "app/data_folder.hpp"
 #include "app/output.hpp"
 #include "app/subcommands.hpp"
 #include "app/workflow.hpp"
@@ -36,7 +37,7 @@ void tune(const TuneArguments& options) {
 void add_tune(const Subcommands& all) {
   auto options = std::make_shared<TuneArguments>();
   const Subcommand command = all.add("tune", "fit the baselines' parameters (Q, R, P0) to training draws");
-  command.argument("study", options->study, "study file (TOML)").required();
+  add_study(command, options->study);
   command.argument("-o,--output", options->output, "parameters file; the one that the study names where not given");
   command.argument("--seed", options->seed, "seed; the study's own where not given");
   command.argument("--threads", options->threads, "0: one per core").within(0, 1024);

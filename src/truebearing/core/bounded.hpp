@@ -4,6 +4,10 @@
 
 #include <Eigen/Core>
 
+// Part of the layout of our records; the package's CMake target and its pkg-config file pass it.
+static_assert(EIGEN_MAX_ALIGN_BYTES == 16 && EIGEN_MAX_STATIC_ALIGN_BYTES == 16,
+              "truebearing is compiled with EIGEN_MAX_ALIGN_BYTES=16: compile with -DEIGEN_MAX_ALIGN_BYTES=16");
+
 namespace truebearing {
 
 inline constexpr int kMaxDimension = 8;

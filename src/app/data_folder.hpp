@@ -1,0 +1,23 @@
+// What comes with the program: share/truebearing/data with scenarios and studies, share/truebearing/models.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "app/arguments.hpp"
+
+namespace truebearing {
+
+/// share/truebearing above the program's folder, as installed, or beside the program, as built. Throws InputError where
+/// there is none.
+std::filesystem::path data_folder();
+
+/// The file of that name, or else that of the study of that name, with or without .toml, that comes with the program.
+std::string study_file(const std::string& name);
+
+/// The argument "study" or "scenario": a file, or else the name, with or without .toml, of one that comes with the
+/// program.
+void add_study(const Subcommand& command, std::string& file);
+void add_scenario(const Subcommand& command, std::string& file);
+
+}  // namespace truebearing

@@ -11,7 +11,7 @@ file(REMOVE_RECURSE ${work})
 
 run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${work}/prefix)
 run(${CMAKE_COMMAND} -DREADELF=${READELF} "-DFOLDERS=${BUILD_DIR};${work}/prefix/bin;${work}/prefix/lib"
-    -P ${CMAKE_CURRENT_LIST_DIR}/library_paths.cmake)
+    -P ${CMAKE_CURRENT_LIST_DIR}/linked_programs.cmake)
 run(${work}/prefix/bin/truebearing check radar_1d_family)
 foreach(file share/doc/truebearing/README.md share/doc/truebearing/LICENSE share/man/man1/truebearing.1
              share/bash-completion/completions/truebearing)

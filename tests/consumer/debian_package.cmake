@@ -26,4 +26,4 @@ if(NOT output MATCHES "nfnn")
   message(FATAL_ERROR "compare prints:\n${output}")
 endif()
 run(${CMAKE_COMMAND} -DREADELF=${READELF} -DFOLDERS=${work}/root/usr/bin
-    -P ${CMAKE_CURRENT_LIST_DIR}/library_paths.cmake)
+    -P ${CMAKE_CURRENT_LIST_DIR}/linked_programs.cmake)

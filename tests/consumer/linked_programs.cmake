@@ -1,6 +1,7 @@
 # Every program and library that is built or installed looks for libraries in folders of absolute paths, or beside itself:
-# an empty or relative element of its RUNPATH would stand for the folder that its user stands in.
-#     cmake -DREADELF=... -DFOLDERS=a;b -P library_paths.cmake
+# an empty or relative element of its RUNPATH would stand for the folder that its user stands in. And it is linked as
+# truebearing_harden() says.
+#     cmake -DREADELF=... -DFOLDERS=a;b -P linked_programs.cmake
 set(seen 0)
 foreach(folder IN LISTS FOLDERS)
   file(GLOB files ${folder}/*)
@@ -12,10 +13,13 @@ foreach(folder IN LISTS FOLDERS)
     if(NOT magic STREQUAL 7f454c46)
       continue()
     endif()
-    execute_process(COMMAND ${READELF} -d ${file} OUTPUT_VARIABLE dynamic COMMAND_ERROR_IS_FATAL ANY)
+    execute_process(COMMAND ${READELF} -W -h -l -d ${file} OUTPUT_VARIABLE dynamic COMMAND_ERROR_IS_FATAL ANY)
     math(EXPR seen "${seen} + 1")
-    if(NOT dynamic MATCHES "BIND_NOW|Flags:[^\n]*NOW")
-      message(SEND_ERROR "${file} binds its symbols late")
+    if(NOT dynamic MATCHES "BIND_NOW|Flags:[^\n]*NOW" OR NOT dynamic MATCHES "GNU_RELRO")
+      message(SEND_ERROR "${file} leaves tables writable that others could redirect")
+    endif()
+    if(NOT dynamic MATCHES "Type: +DYN")
+      message(SEND_ERROR "${file} has its code at a fixed address")
     endif()
     if(NOT dynamic MATCHES "R(UN)?PATH\\)[^[]*\\[([^\n]*)\\]")
       continue()

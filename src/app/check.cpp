@@ -7,6 +7,7 @@
 #include "app/data_folder.hpp"
 #include "app/subcommands.hpp"
 #include "truebearing/core/error.hpp"
+#include "truebearing/recording/snapshot_log.hpp"
 #include "truebearing/study/study.hpp"
 
 namespace truebearing {
@@ -50,10 +51,14 @@ void check_study(const std::string& path) {
 }
 
 void check(const CheckArguments& options) {
-  if (std::filesystem::path(options.file).extension() != ".toml")
-    return check_log_file(options.file, options.reading, options.json);
-  if (!options.json.empty()) throw InputError("--json", "is of logs, and this is a study", "no --json");
-  check_study(options.file);
+  const bool is_study = std::filesystem::path(options.file).extension() == ".toml";
+  const bool is_array = !is_study && is_snapshot_log(options.file);
+  if (!is_study && !is_array) return check_log_file(options.file, options.reading, options.json);
+  if (!options.json.empty()) throw InputError("--json", "is of logs in CSV", "no --json");
+  if (is_study)
+    check_study(options.file);
+  else
+    check_snapshot_log(options.file);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "truebearing/core/printable.hpp"
 #include "truebearing/evaluation/text_table.hpp"
 #include "truebearing/recording/log_check.hpp"
+#include "truebearing/recording/snapshot_log.hpp"
 
 namespace truebearing {
 namespace {
@@ -85,14 +86,18 @@ std::string report_json(const LogReport& report) {
 
 }  // namespace
 
+void check_snapshot_log(const std::string& path) {
+  const Recording recording = read_snapshot_log(path);
+  fmt::print("{}: of a line array: {} intervals, {} missing, {} repeated ones dropped, {} true targets\ncan be used\n",
+             shortened_from_front(printable(path), 100), recording.measurements.size(), recording.counts.missing,
+             recording.counts.repeated, recording.truth.size());
+}
+
 void check_log_file(const std::string& path, const LogArguments& reading, const std::string& json) {
   const LogReport report = check_log(path, reading.over({}));
   if (json != "-") print_report(report);
   if (!json.empty()) write_output(json, report_json(report));
-  if (!report.is_usable())
-    throw InputError(shortened_from_front(report.log, 60),
-                     fmt::format("cannot be used: {} faults", report.faults.size()),
-                     "a log that `truebearing check` finds no fault with");
+  if (!report.is_usable()) throw InputError({}, report.faults.front());
 }
 
 }  // namespace truebearing

@@ -7,6 +7,9 @@
 
 namespace truebearing {
 
+/// Prints what a line array's log (HDF5) holds. Throws InputError where it cannot be read.
+void check_snapshot_log(const std::string& path);
+
 /// Prints the report, or writes it as JSON where `json` is not empty ("-" is standard output). Throws InputError where
 /// the log cannot be used.
 void check_log_file(const std::string& path, const LogArguments& reading, const std::string& json);

@@ -77,12 +77,12 @@ TEST(ProgramRecordings, TmaTakesOtherNamesAndUnits) {
   }
   folder.write("plain.csv", plain);
   folder.write("other.tsv", other);
-  const Outcome expected = run(folder, "tma plain.csv");
-  const Outcome mapped = run(folder, "tma other.tsv --columns t=time_s,azimuth=bearing_deg");
+  const Outcome expected = run(folder, "tma - < plain.csv");
+  const Outcome mapped = run(folder, "tma - --columns t=time_s,azimuth=bearing_deg < other.tsv");
   EXPECT_EQ(expected.status, 0) << expected.err;
   EXPECT_EQ(mapped.status, 0) << mapped.err;
   EXPECT_EQ(mapped.out, expected.out);
-  EXPECT_EQ(mapped.err, "truebearing: other.tsv: columns left out: note\n");
+  EXPECT_EQ(mapped.err, "truebearing: -: columns left out: note\n");
 }
 
 }  // namespace

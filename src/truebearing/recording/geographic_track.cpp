@@ -170,6 +170,8 @@ std::vector<Target> read_targets(CsvReader& csv, const RecordingOptions& options
           columns.time.index(), fmt::format("is {}, earlier than {} before it", fix.time_s, target.latest_s),
           fmt::format("times that do not decrease, or --sort-window {:.6g} or more", target.latest_s - fix.time_s));
     tracks.late += fix.time_s < target.latest_s;
+    if (!fix.is_missing())
+      tracks.widest_deg = std::max({tracks.widest_deg, std::abs(fix.latitude_deg), std::abs(fix.longitude_deg)});
     target.latest_s = std::max(target.latest_s, fix.time_s);
     target.fixes.push_back(fix);
   }

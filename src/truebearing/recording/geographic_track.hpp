@@ -46,6 +46,7 @@ struct GeographicTracks {
   std::size_t not_available = 0;   ///< positions and velocities by which AIS says that there is none
   std::size_t null_island =
       0;                     ///< positions at 0, 0 of a target that is nowhere near, as receivers write without a fix
+  double widest_deg = 0.0;   ///< the greatest latitude or longitude, without its sign
   double fastest_mps = 0.0;  ///< of all true velocities, before min_speed_mps
 };
 

@@ -157,6 +157,27 @@ class LogSurvey {
 
   void odd(const std::string& what) { report_.oddities.push_back(what); }
 
+  bool is_in_degrees(std::size_t index) const {
+    return report_.columns[index].unit == "deg" || report_.columns[index].unit == "degrees";
+  }
+
+  // Of a position both angles would be.
+  void look_for_radians() {
+    double greatest = 0.0;
+    std::string names, first;
+    bool differ = false;
+    for (const std::size_t index : measured_) {
+      const ColumnReport& column = report_.columns[index];
+      if (!is_in_degrees(index)) continue;
+      if (first.empty()) first = std::string(apart(column.name).stem);
+      names.append(names.empty() ? "" : ", ").append(column.name);
+      greatest = std::fmax(greatest, std::fmax(std::abs(column.least), std::abs(column.greatest)));
+      differ |= column.least < column.greatest;
+    }
+    if (differ && greatest <= 2.0 * kPi && report_.rows >= kFewestValues)
+      odd(fmt::format("within 2 pi of 0: {}: are the angles radians, {}_rad?", names, first));
+  }
+
   void look_at_values() {
     constexpr double kFirstYear_ms = 1e11, kLowFrequency_hz = 5.0;
     constexpr std::size_t kStuck = 10;
@@ -164,15 +185,13 @@ class LogSurvey {
       odd(report_.columns[time_->index()].name + " is beyond the year 5000: are the times milliseconds, time_ms?");
     if (longest_stuck_ >= kStuck)
       odd(fmt::format("{} rows up to line {} measure the same: is the sensor stuck?", longest_stuck_, stuck_line_));
+    look_for_radians();
     for (const std::size_t index : measured_) {
       const ColumnReport& column = report_.columns[index];
       const double greatest = std::fmax(std::abs(column.least), std::abs(column.greatest));
-      const bool is_degrees = column.unit == "deg" || column.unit == "degrees";
       const std::string stem(apart(column.name).stem);
       if (report_.rows < kFewestValues || std::isnan(greatest)) continue;
-      if (is_degrees && greatest <= 2.0 * kPi && column.least < column.greatest)
-        odd(fmt::format("{} is within 2 pi of 0: are the angles radians, {}_rad?", column.name, stem));
-      if (stem == "bearing" && is_degrees && greatest > 360.0)
+      if (stem == "bearing" && is_in_degrees(index) && greatest > 360.0)
         odd(fmt::format("{} goes beyond 360 degrees, to {:g}", column.name, greatest));
       if (column.unit == "hz" && column.greatest < kLowFrequency_hz)
         odd(fmt::format("{} is below {:g} Hz: are the frequencies kHz, {}_khz?", column.name, kLowFrequency_hz, stem));

@@ -261,8 +261,10 @@ class LayoutReader {
 
   void check_measured_count() {
     if (!layout_.z.empty() && layout_.z.size() <= kMaxDimension) return;
+    const std::vector<std::string> others = layout_.left_out(csv_);
+    const std::string here = others.empty() ? "" : ", other than " + as_shown(others.front());
     layout_.faults.emplace_back(
-        csv_.name(), fmt::format("has {} measured columns", layout_.z.size()),
+        csv_.name(), fmt::format("has {} measured columns{}", layout_.z.size(), here),
         fmt::format("1 to {}, such as range_m, bearing_deg; units are {}", kMaxDimension, all_suffixes()));
   }
 

@@ -76,7 +76,8 @@ std::string suffixes_of(Dimension dimension) {
 std::string all_suffixes() {
   std::string list;
   for (const Unit& unit : kUnits)
-    if (unit.suffix == unit.stands) list.append(list.empty() ? "_" : ", _").append(unit.suffix);
+    if (unit.suffix == unit.stands && unit.dimension != Dimension::time)
+      list.append(list.empty() ? "_" : ", _").append(unit.suffix);
   return list;
 }
 

@@ -53,7 +53,8 @@ std::string unit_in_question(const GeographicTracks& tracks, const GeographicTra
   const double period_s = (rows.back().time_s - rows.front().time_s) / static_cast<double>(rows.size());
   if (period_s >= kLongPeriod_s && is_plausible(kMilli * tracks.fastest_mps))
     return "; are its times in milliseconds, time_ms?";
-  if (is_plausible(degrees(tracks.fastest_mps))) return "; are its angles in radians, latitude_rad?";
+  if (tracks.widest_deg <= 2.0 * kPi && is_plausible(degrees(tracks.fastest_mps)))
+    return "; are its angles in radians, latitude_rad?";
   return {};
 }
 

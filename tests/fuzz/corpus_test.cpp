@@ -1,0 +1,29 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <vector>
+
+#include "tests/fuzz/readers.hpp"
+
+namespace truebearing::corpus_test {
+namespace {
+
+// Files called valid_... are read, those called hostile_... refused; the sanitizers see how.
+TEST(Corpus, IsReadOrRefused) {
+  std::set<char> readers;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::filesystem::path(TRUEBEARING_SOURCE_DIR) / "tests/fuzz/corpus")) {
+    std::ifstream file(entry.path(), std::ios::binary);
+    const std::vector<std::uint8_t> bytes((std::istreambuf_iterator<char>(file)), {});
+    const bool valid = entry.path().filename().string().starts_with("valid_");
+    EXPECT_EQ(testing::read_hostile(bytes), valid) << entry.path();
+    if (valid) readers.insert(static_cast<char>(bytes.front()));
+  }
+  EXPECT_EQ(readers, (std::set<char>{'g', 'h', 'm', 'p', 'r', 's', 't', 'y'})) << "each reads something";
+}
+
+}  // namespace
+}  // namespace truebearing::corpus_test

@@ -1,0 +1,71 @@
+#include "tests/fuzz/readers.hpp"
+
+#include <sstream>
+#include <string>
+
+#include "tests/support/temporary_folder.hpp"
+#include "truebearing/core/error.hpp"
+#include "truebearing/correction/model_file.hpp"
+#include "truebearing/io/table_reader.hpp"
+#include "truebearing/recording/geographic_track.hpp"
+#include "truebearing/recording/recording_csv.hpp"
+#include "truebearing/recording/snapshot_log.hpp"
+#include "truebearing/study/parameters_file.hpp"
+#include "truebearing/study/study.hpp"
+#include "truebearing/tracker/step_log.hpp"
+#include "truebearing/tracker/step_log_recording.hpp"
+
+namespace truebearing::testing {
+namespace {
+
+template <typename Read>
+void read_file(const std::string& text, const Read& read) {
+  const TemporaryFolder folder;
+  read(folder.write("hostile", text));
+}
+
+void read(std::uint8_t reader, const std::string& text) {
+  std::istringstream stream(text);
+  switch (reader) {
+    case 'r':
+      read_recording(stream, "hostile.csv");
+      break;
+    case 'g':
+      read_geographic_tracks(stream, "hostile.csv");
+      break;
+    case 's':
+      recordings_of(read_step_log(stream, "hostile.csv"), "hostile.csv");
+      break;
+    case 't':
+      parse_toml(text, "hostile.toml");
+      break;
+    case 'm':
+      parse_model(text, "hostile.json");
+      break;
+    case 'p':
+      read_file(text, read_parameters_file);
+      break;
+    case 'y':
+      read_file(text, Study::load);
+      break;
+    case 'h':
+      read_file(text, read_snapshot_log);
+      break;
+    default:
+      throw InputError("hostile", "is for no reader");
+  }
+}
+
+}  // namespace
+
+bool read_hostile(std::span<const std::uint8_t> bytes) {
+  if (bytes.empty()) return false;
+  try {
+    read(bytes.front(), std::string(bytes.begin() + 1, bytes.end()));
+  } catch (const InputError&) {
+    return false;
+  }
+  return true;
+}
+
+}  // namespace truebearing::testing

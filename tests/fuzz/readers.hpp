@@ -1,0 +1,13 @@
+// Everything that reads what a stranger may have written, on any bytes.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace truebearing::testing {
+
+/// The first byte says which reader: r recording, g geographic track, s step log, t TOML, m model, p parameters, y study,
+/// h snapshots. True where the rest was read; where it was refused by an InputError, false. Nothing else may happen.
+bool read_hostile(std::span<const std::uint8_t> bytes);
+
+}  // namespace truebearing::testing

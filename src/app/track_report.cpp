@@ -14,7 +14,7 @@ namespace {
 using Rows = std::vector<std::vector<std::string>>;
 
 // Whole where it is whole, also of a time of day; at most to the microsecond.
-std::string number(double value) {
+std::string whole_or_decimal(double value) {
   if (!(std::abs(value) < 1e12)) return fmt::format("{:g}", value);
   std::string text = fmt::format("{:.6f}", value);
   text.erase(text.find_last_not_of('0') + 1);
@@ -131,7 +131,7 @@ std::string estimate_table(const std::vector<Followed>& all) {
   rows[0].push_back("status");
   for (const Followed& followed : all)
     for (const StepRecord& record : followed.last) {
-      rows.push_back({followed.name, number(record.time_s)});
+      rows.push_back({followed.name, whole_or_decimal(record.time_s)});
       if (several) rows.back().push_back(fmt::format("{}", record.track));
       for (const std::string& component : components) rows.back().push_back(component_of(record, component));
       rows.back().push_back(std::string(to_string(record.status)));
@@ -143,8 +143,8 @@ std::string event_table(const std::vector<Followed>& all) {
   Rows rows{{"tracker", "time s", "event", "value"}};
   for (const Followed& followed : all)
     for (const TrackEvent& event : followed.events)
-      rows.push_back({followed.name, number(event.time_s), std::string(to_string(event.kind)),
-                      std::isfinite(event.value) ? number(event.value) : ""});
+      rows.push_back({followed.name, whole_or_decimal(event.time_s), std::string(to_string(event.kind)),
+                      std::isfinite(event.value) ? whole_or_decimal(event.value) : ""});
   return rows.size() > 1 ? aligned(rows) : "";
 }
 

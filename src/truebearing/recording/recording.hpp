@@ -32,6 +32,7 @@ struct Recording {
   /// Names of the components of z with units: "position_m"; of a line array "snapshots".
   std::vector<std::string> measured;
   std::vector<Measurement> measurements;
+  std::vector<std::size_t> line;            ///< of the file that each was read from, from 1; empty where there is none
   const StateSpace* truth_space = nullptr;  ///< nullptr where there is no truth
   std::vector<Truth> truth;                 ///< one per target; each as long as `measurements`
   std::vector<std::string> phases;          ///< names of what targets do, for the report: "manoeuvre", "quiet"

@@ -183,6 +183,7 @@ bool MeasurementLog::read_row() {
   row.time_s = time_.read(csv_);
   check_lateness(row.time_s);
   row.number = rows_++;
+  row.line = csv_.line();
   for (const std::size_t column : columns_) row.cells.push_back(csv_.number(column));
   row.measurement = read_measurement(row.cells, row.time_s);
   row.truth = BoundedVector::Constant(static_cast<Eigen::Index>(layout_.truth.size()), kNaN);
@@ -231,6 +232,7 @@ void MeasurementLog::check_end() const {
 
 void MeasurementLog::append_to(Recording& recording) const {
   recording.measurements.push_back(measurement());
+  recording.line.push_back(row_.line);
   if (!truth_space()) return;
   recording.truth.resize(1);
   recording.truth[0].x.push_back(truth());

@@ -75,6 +75,7 @@ class MeasurementLog {
   struct Row {
     double time_s = 0.0;
     std::uint64_t number = 0;   // of the file: rows of one time stay in its order
+    std::size_t line = 0;       // of the file
     std::vector<double> cells;  // of the columns that are read
     Measurement measurement;
     BoundedVector truth;

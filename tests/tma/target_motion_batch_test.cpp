@@ -68,6 +68,27 @@ TEST(TargetMotionBatch, TurnsAndShiftsWithTheFrame) {
   }
 }
 
+TEST(TargetMotionBatch, ScalesWithOwnShipsWay) {
+  const BearingWindow window = two_legs(kTarget, 300.0, 900.0, 1.0);
+  TargetMotionBatch batch;
+  const BatchEstimate plain = batch.solve(window);
+  EXPECT_TRUE(plain.converged);
+  for (const double scale : {1e-3, 0.1, 10.0, 1e3}) {
+    BearingWindow scaled;
+    for (std::size_t i = 0; i < window.size(); ++i)
+      scaled.add(window.time_s(i), window.bearing_rad(i), radians(1.0), scale * window.site_m(i));
+    const BatchEstimate estimate = batch.solve(scaled);
+    EXPECT_LT((estimate.x - scale * plain.x).norm(), 1e-3 * scale * plain.x.norm()) << scale;
+    EXPECT_LT((estimate.P - scale * scale * plain.P).norm(), 1e-2 * scale * scale * plain.P.norm()) << scale;
+    EXPECT_TRUE(batch.observability().observable()) << scale;
+  }
+}
+
+TEST(TargetMotionBatch, SaysWhereItsLimitEndedIt) {
+  const BearingWindow window = two_legs(kTarget, 300.0, 900.0, 1.0);
+  EXPECT_FALSE(TargetMotionBatch({.max_iterations = 2}).solve(window).converged);
+}
+
 TEST(TargetMotionBatch, WholeTurnsChangeNothing) {
   const BearingWindow window = two_legs(kTarget, 300.0, 900.0, 1.0);
   BearingWindow turned;

@@ -14,6 +14,7 @@ struct BatchEstimate {
   double cost = 0.0;                            ///< 1/2 sum of squared normalised residuals, without a prior's share
   double objective = 0.0;                       ///< with it, of TargetMotionBatch
   int iterations = 0;                           ///< of the start that won
+  bool converged = true;                        ///< false where their limit ended it
   int starts = 0;
   int non_finite_starts = 0;
 };

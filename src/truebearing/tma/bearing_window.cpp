@@ -25,6 +25,18 @@ void BearingWindow::drop_before(double time_s) {
     column->erase(column->begin(), column->begin() + count);
 }
 
+BearingWindow BearingWindow::without(std::span<const std::size_t> left_out) const {
+  BearingWindow rest;
+  rest.reserve(size());
+  for (std::size_t i = 0; i < size(); ++i) {
+    if (!left_out.empty() && left_out.front() == i)
+      left_out = left_out.subspan(1);
+    else
+      rest.add(time_s_[i], bearing_rad_[i], 1.0 / std::sqrt(weight_[i]), site_m(i));
+  }
+  return rest;
+}
+
 void BearingWindow::clear() {
   for (std::vector<double>* column : {&time_s_, &bearing_rad_, &sine_, &cosine_, &weight_, &east_m_, &north_m_})
     column->clear();

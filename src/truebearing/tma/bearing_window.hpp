@@ -3,6 +3,7 @@
 // (modified_polar.hpp). Arrays by component, so that a pass over the window runs in SIMD instructions.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "truebearing/measurement/measurement.hpp"
@@ -16,6 +17,8 @@ class BearingWindow {
   void add(double time_s, double bearing_rad, double sigma_rad, const Eigen::Vector2d& site_m);
   /// Drops what is older than `time_s`.
   void drop_before(double time_s);
+  /// Those whose place is not in `left_out`, which rises.
+  BearingWindow without(std::span<const std::size_t> left_out) const;
   void clear();
   void reserve(std::size_t count);
 

@@ -24,6 +24,7 @@ struct Descent {
   Eigen::Vector4d x;
   NormalEquations<4> at;
   int iterations = 0;
+  bool converged = false;
 };
 
 Descent descend(const BearingWindow& window, const Eigen::Vector4d& start, const ChoOptions& options) {
@@ -51,7 +52,8 @@ Descent descend(const BearingWindow& window, const Eigen::Vector4d& start, const
       else if (ratio > 0.75)
         mu /= 3.0;
     }
-    if (h.norm() < options.tolerance) break;
+    descent.converged = h.norm() < options.tolerance;
+    if (descent.converged) break;
   }
   return descent;
 }
@@ -86,6 +88,7 @@ BatchEstimate solve_cho(const BearingWindow& window, const ChoOptions& options) 
     estimate.found = true;
     estimate.cost = descent.at.cost;
     estimate.iterations = descent.iterations;
+    estimate.converged = descent.converged;
     estimate.x = descent.x;
     information = descent.at.A;
   }

@@ -1,11 +1,21 @@
 #include "truebearing/tma/modified_polar.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "truebearing/core/angle.hpp"
 #include "truebearing/tma/bearing_sums.hpp"
 
 namespace truebearing {
+namespace {
+
+double scale_of(double way_m) {
+  constexpr double kNear_m = 2500.0, kFar_m = 14000.0, kWays = 20.0;
+  if (!(way_m > 0.0)) return 1.0;
+  return std::clamp(1.0, way_m / kWays / kNear_m, kWays * way_m / kFar_m);
+}
+
+}  // namespace
 
 void ModifiedPolar::look_at(const BearingWindow& window) {
   window_ = &window;
@@ -34,14 +44,16 @@ void ModifiedPolar::look_at(const BearingWindow& window) {
   bearing_rad_ = bearing0 + (b1 - bearing_radps_ * t1) / count;
   line_mps_ = (count * mt - t1 * m1) / determinant;
   line_m_ = site0_m + (m1 - t1 * line_mps_) / count;
-  double squares = 0.0;
+  double squares = 0.0, way_m = 0.0;
   for (std::size_t i = 0; i < m; ++i) {
     const Eigen::Vector2d d = window.site_m(i) - line_m_ - (window.time_s(i) - origin_s_) * line_mps_;
     east_m_[i] = d.x();
     north_m_[i] = d.y();
     squares += d.squaredNorm();
+    way_m = std::max(way_m, (window.site_m(i) - site0_m).squaredNorm());
   }
   departure_m_ = std::sqrt(squares / count);
+  scale_ = scale_of(std::sqrt(way_m));
 }
 
 NormalEquations<4> ModifiedPolar::operator()(const Eigen::Vector4d& y) const {

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <limits>
 #include <vector>
 
@@ -36,6 +37,13 @@ class ModifiedPolar {
   double length_s() const { return window_->last_time_s() - window_->first_time_s(); }
   /// Root mean square of d(t), m: how far own ship was from its line.
   double departure_m() const { return departure_m_; }
+  /// The unit of the ranges that are worth looking at: 1 where own ship came between 700 m and 50 km far from where it
+  /// began, and in proportion where it sailed less or more, so that 14 km is no more than twenty times its way, and
+  /// 2.5 km no less than a twentieth. 1 where it did not move.
+  double scale() const { return scale_; }
+  /// rho worth looking at: of 1000 km, and of 10 m in that unit, for nearer there is only noise to explain.
+  double least_inverse_range() const { return 1e-6 / std::max(scale_, 1.0); }
+  double largest_inverse_range() const { return 0.1 / scale_; }
 
   /// beta and beta' by regression of the unwrapped bearings, r'/r = 0, at that range.
   Eigen::Vector4d start(double range_m) const;
@@ -51,7 +59,7 @@ class ModifiedPolar {
   double origin_s_ = 0.0;
   Eigen::Vector2d line_m_{0.0, 0.0}, line_mps_{0.0, 0.0};  // a, b
   std::vector<double> east_m_, north_m_;                   // d(t)
-  double departure_m_ = 0.0;
+  double departure_m_ = 0.0, scale_ = 1.0;
   double bearing_rad_ = 0.0, bearing_radps_ = 0.0;  // of the regression, at origin_s_
 };
 

@@ -9,16 +9,17 @@
 namespace truebearing {
 namespace {
 
-constexpr double kLeastInverseRange = 1e-6;   // 1000 km
-constexpr double kLargestInverseRange = 0.1;  // 10 m: nearer there is only noise to explain
-
-LevenbergMarquardtOptions<4> descent_options(int max_iterations) {
-  LevenbergMarquardtOptions<4> options;
-  options.max_iterations = max_iterations;
-  // Of bearings that say nothing: a standard deviation of a thousand radians, of 10 rad/s, of 1 / m.
-  options.least_curvature << 1e-6, 1e-2, 1e-2, 1.0;
-  options.lower[3] = kLeastInverseRange;
-  return options;
+// A target that own ship's bearings run from to `first_m` at the first of them and `last_m` at the last, at origin_s.
+Eigen::Vector4d between_ends(const BearingWindow& window, double first_m, double last_m, double origin_s) {
+  const auto position = [&](std::size_t k, double range_m) -> Eigen::Vector2d {
+    const double bearing = window.bearing_rad(k);
+    return window.site_m(k) + range_m * Eigen::Vector2d(std::sin(bearing), std::cos(bearing));
+  };
+  const Eigen::Vector2d first = position(0, first_m), last = position(window.size() - 1, last_m);
+  const Eigen::Vector2d v = (last - first) / (window.last_time_s() - window.first_time_s());
+  Eigen::Vector4d x;
+  x << first + (origin_s - window.first_time_s()) * v, v;
+  return x;
 }
 
 }  // namespace
@@ -61,7 +62,7 @@ NormalEquations<4> TargetMotionBatch::data(const Eigen::Vector4d& y) const {
 NormalEquations<4> TargetMotionBatch::objective(const Eigen::Vector4d& y) const {
   NormalEquations<4> equations = data(y);
   if (prior_) prior_->add(polar_, y, equations);
-  if (y[3] > kLargestInverseRange) equations.cost = std::numeric_limits<double>::infinity();
+  if (y[3] > polar_.largest_inverse_range()) equations.cost = std::numeric_limits<double>::infinity();
   return equations;
 }
 
@@ -76,10 +77,19 @@ Eigen::Vector4d TargetMotionBatch::at_end(const Eigen::Vector4d& y) const {
   return x;
 }
 
+LevenbergMarquardtOptions<4> TargetMotionBatch::descent_options() const {
+  LevenbergMarquardtOptions<4> options;
+  options.max_iterations = options_.max_iterations;
+  // Of bearings that say nothing: a standard deviation of a thousand radians, of 10 rad/s, of 1 / m.
+  options.least_curvature << 1e-6, 1e-2, 1e-2, polar_.scale() * polar_.scale();
+  options.lower[3] = polar_.least_inverse_range();
+  return options;
+}
+
 void TargetMotionBatch::descend(const Eigen::Vector4d& start, BatchEstimate& estimate) {
   ++estimate.starts;
-  Minimum<4> minimum = levenberg_marquardt([this](const Eigen::Vector4d& y) { return objective(y); }, start,
-                                           descent_options(options_.max_iterations));
+  Minimum<4> minimum =
+      levenberg_marquardt([this](const Eigen::Vector4d& y) { return objective(y); }, start, descent_options());
   if (minimum.convergence == Convergence::not_finite)
     ++estimate.non_finite_starts;
   else
@@ -99,9 +109,10 @@ void TargetMotionBatch::conclude(const Minimum<4>& minimum, BatchEstimate& estim
   estimate.cost = data(minimum.x).cost;
   estimate.objective = minimum.at.cost;
   estimate.iterations = minimum.iterations;
+  estimate.converged = minimum.convergence == Convergence::converged || minimum.iterations < options_.max_iterations;
   Eigen::Matrix4d information = minimum.at.A;
   // What the data leave open is known by .1 rad/s, .1 / s and 1 / (100 m) and no worse, so that P stays finite.
-  information.diagonal() += Eigen::Vector4d(0.0, 1e2, 1e2, 1e4);
+  information.diagonal() += Eigen::Vector4d(0.0, 1e2, 1e2, 1e4 * polar_.scale() * polar_.scale());
   estimate.P = T * covariance_of(information) * T.transpose();
   estimate.P = 0.5 * (estimate.P + estimate.P.transpose().eval());
   estimate.x = at_end(minimum.x);
@@ -109,7 +120,7 @@ void TargetMotionBatch::conclude(const Minimum<4>& minimum, BatchEstimate& estim
 
 double TargetMotionBatch::cost_at_infinity(const Eigen::Vector4d& best) const {
   // Frequencies tell a velocity: infinitely far away any change of the bearing would be an infinite one.
-  const double rho = doppler_.empty() ? 0.0 : kLeastInverseRange;
+  const double rho = doppler_.empty() ? 0.0 : polar_.least_inverse_range();
   const auto at_infinity = [&](Eigen::Vector4d y) {
     y[3] = rho;
     NormalEquations<4> equations = data(y);
@@ -118,7 +129,7 @@ double TargetMotionBatch::cost_at_infinity(const Eigen::Vector4d& best) const {
     equations.A.col(3).setZero();
     return equations;
   };
-  const LevenbergMarquardtOptions<4> options = descent_options(options_.max_iterations);
+  const LevenbergMarquardtOptions<4> options = descent_options();
   const auto from = [&](const Eigen::Vector4d& start) {
     const double cost = levenberg_marquardt(at_infinity, start, options).at.cost;
     return std::isfinite(cost) ? cost : std::numeric_limits<double>::infinity();
@@ -143,10 +154,10 @@ BatchEstimate TargetMotionBatch::solve(const BearingWindow& window, const std::o
   if (window.size() < 3 || !(window.last_time_s() > window.first_time_s())) return estimate;
   look_at(window, prior, frequencies);
   if (warm) descend(from_end(*warm), estimate);
-  for (const double range_m : options_.start_ranges_m) descend(polar_.start(range_m), estimate);
-  const auto from_cho = [&](int i) {
-    Eigen::Vector4d x = cho_start(window, i);
-    x.head<2>() += (polar_.origin_s() - window.first_time_s()) * x.tail<2>();
+  for (const double range_m : options_.start_ranges_m) descend(polar_.start(polar_.scale() * range_m), estimate);
+  const auto from_ends = [&](double first_m, double last_m) {
+    const Eigen::Vector4d x =
+        between_ends(window, polar_.scale() * first_m, polar_.scale() * last_m, polar_.origin_s());
     descend(polar_.from_cartesian(x), estimate);
   };
   // Bearings of a target that passed close by are no straight line, nor is a start that takes them for one any good. So
@@ -156,10 +167,10 @@ BatchEstimate TargetMotionBatch::solve(const BearingWindow& window, const std::o
     return 2.0 * minimum.at.cost < m + 6.0 * std::sqrt(2.0 * m);
   };
   if (options_.start_grid) {
-    for (int i = 0; i < kChoStarts; ++i) from_cho(i);
+    for (int i = 0; i < kChoStarts; ++i) from_ends(1000.0 * (1 + i / kChoRanges), 1000.0 * (1 + i % kChoRanges));
   } else if (std::none_of(minima_.begin(), minima_.end(), fits)) {
-    for (const int first_km : {2, 6, 13})
-      for (const int last_km : {2, 6, 13}) from_cho((first_km - 1) * kChoRanges + last_km - 1);
+    for (const double first_m : {2000.0, 6000.0, 13000.0})
+      for (const double last_m : {2000.0, 6000.0, 13000.0}) from_ends(first_m, last_m);
   }
   if (minima_.empty()) return estimate;
 

@@ -35,6 +35,7 @@ struct BatchPrior {
 };
 
 struct TargetMotionBatchOptions {
+  /// For own ship that sails kilometres; in proportion where it sails less or more (ModifiedPolar::scale).
   std::vector<double> start_ranges_m{2500.0, 6000.0, 14000.0};
   bool start_grid = false;  ///< besides, from the 225 starts of Cho 2015: to see that a few are enough
   /// Bearings beyond are outliers (Huber 1964). Frequencies that are become levels of their own
@@ -74,6 +75,7 @@ class TargetMotionBatch {
   void look_at(const BearingWindow& window, const std::optional<BatchPrior>& prior, const DopplerWindow* frequencies);
   NormalEquations<4> data(const Eigen::Vector4d& y) const;
   NormalEquations<4> objective(const Eigen::Vector4d& y) const;
+  LevenbergMarquardtOptions<4> descent_options() const;
   void descend(const Eigen::Vector4d& start, BatchEstimate& estimate);
   const Minimum<4>& best() const;
   void conclude(const Minimum<4>& minimum, BatchEstimate& estimate) const;

@@ -5,17 +5,73 @@
 
 #include "truebearing/core/chi_square.hpp"
 #include "truebearing/core/linear_algebra.hpp"
+#include "truebearing/tma/velocity_change.hpp"
 
 namespace truebearing {
+
+namespace {
+
+constexpr std::size_t kFewestInARow = 4;  // frequencies: fewer are strays
+
+double sigmas_apart(const DopplerWindow& frequencies, std::size_t i, std::size_t j) {
+  return std::abs(frequencies.frequency_hz(i) - frequencies.frequency_hz(j)) /
+         std::hypot(frequencies.sigma_hz(i), frequencies.sigma_hz(j));
+}
+
+}  // namespace
 
 using Handling = FrequencyChangeOptions::Handling;
 
 void number_segments(const DopplerWindow& frequencies, double gamma, std::vector<int>& segment) {
   segment.assign(frequencies.size(), 0);
-  for (std::size_t i = 1; i < frequencies.size(); ++i) {
-    const double difference = frequencies.frequency_hz(i) - frequencies.frequency_hz(i - 1);
-    const double sigma = std::hypot(frequencies.sigma_hz(i), frequencies.sigma_hz(i - 1));
-    segment[i] = segment[i - 1] + (std::abs(difference) < gamma * sigma ? 0 : 1);
+  for (std::size_t i = 1; i < frequencies.size(); ++i)
+    segment[i] = segment[i - 1] + (sigmas_apart(frequencies, i, i - 1) < gamma ? 0 : 1);
+}
+
+void number_segments_past_strays(const DopplerWindow& frequencies, double gamma, std::vector<int>& segment) {
+  const std::size_t n = frequencies.size();
+  segment.assign(n, 0);
+  const auto comes_back = [&](std::size_t i, std::size_t last) {
+    for (std::size_t j = i + 1; j < std::min(n, i + kFewestInARow); ++j)
+      if (sigmas_apart(frequencies, j, last) < gamma) return true;
+    return false;
+  };
+  int edges = 0;
+  for (std::size_t i = 1, last = 0; i < n; ++i) {
+    const bool same = sigmas_apart(frequencies, i, last) < gamma;
+    segment[i] = same ? segment[last] : ++edges;
+    if (same || !comes_back(i, last)) last = i;
+  }
+}
+
+void list_runs(const DopplerWindow& frequencies, std::vector<LevelRun>& runs) {
+  const std::size_t n = frequencies.size();
+  const auto end_of_row = [&](std::size_t begin) {
+    std::size_t end = begin + 1;
+    while (end < n && frequencies.level(end) == frequencies.level(begin)) ++end;
+    return end;
+  };
+  std::size_t longest = 0;
+  for (std::size_t begin = 0, end; begin < n; begin = end)
+    longest = std::max(longest, (end = end_of_row(begin)) - begin);
+  runs.clear();
+  for (std::size_t begin = 0, end; begin < n; begin = end) {
+    end = end_of_row(begin);
+    const int level = frequencies.level(begin);
+    const bool goes_on = !runs.empty() && runs.back().level == level;
+    if (!goes_on && end - begin < std::min(longest, kFewestInARow)) continue;
+    if (!goes_on) {
+      runs.push_back({level, begin, end, 0});
+      // What came before it among strays.
+      const std::size_t since = runs.size() > 1 ? runs[runs.size() - 2].end : 0;
+      for (std::size_t i = begin; i-- > since;)
+        if (frequencies.level(i) == level) {
+          runs.back().begin = i;
+          ++runs.back().count;
+        }
+    }
+    runs.back().end = end;
+    runs.back().count += end - begin;
   }
 }
 
@@ -27,28 +83,61 @@ BatchEstimate FrequencyChangeBatch::solve(TargetMotionBatch& batch, const Bearin
                                           const Eigen::Vector4d* warm) {
   if (options_.handling == Handling::ignored)
     level_.assign(frequencies.size(), 0);
+  else if (options_.handling == Handling::levels)
+    number_segments_past_strays(frequencies, gamma_, level_);
   else
     number_segments(frequencies, gamma_, level_);
   frequencies.set_levels(level_);
   used_ = options_.handling != Handling::bearings_only || frequencies.levels() <= 1;
   BatchEstimate estimate = batch.solve(window, prior, warm, used_ ? &frequencies : nullptr);
   if (estimate.found && options_.handling == Handling::levels) {
-    apart_.clear();
-    bool changed = merge(batch, window, prior, frequencies, estimate);
-    for (int splits = 0; splits < options_.most_splits; ++splits) {
-      const IntervalScore interval = scan(frequencies, estimate);
-      if (interval.statistic <= options_.scan_threshold) break;
-      split(interval, frequencies);
-      const BatchEstimate refined = batch.refine(estimate.x, window, prior, &frequencies);
-      if (refined.found) estimate = refined;
-      changed = true;
-      merge(batch, window, prior, frequencies, estimate);
+    const bool steady = frequencies.levels() == 1 && scan(frequencies, estimate).statistic <= options_.scan_threshold;
+    if (!steady) {
+      // Bearings that are outliers pull at the state, and the frequencies then seem to disagree with it.
+      const std::span<const Outlier> outliers = find_outliers_(window, estimate);
+      if (outliers.empty())
+        find_levels(batch, window, frequencies, prior, estimate);
+      else
+        find_levels_without(places(outliers), batch, window, frequencies, prior, estimate);
+      // The first solution may have been led astray; from all starts once more.
+      const BatchEstimate again = batch.solve(window, prior, &estimate.x, &frequencies);
+      if (again.found) estimate = again;
     }
-    // The first solution may have been led astray; from all starts once more.
-    if (changed) estimate = batch.solve(window, prior, &estimate.x, &frequencies);
   }
   list_changes(frequencies, estimate);
   return estimate;
+}
+
+void FrequencyChangeBatch::find_levels(TargetMotionBatch& batch, const BearingWindow& window,
+                                       DopplerWindow& frequencies, const std::optional<BatchPrior>& prior,
+                                       BatchEstimate& estimate) {
+  const auto refine = [&] {
+    const BatchEstimate refined = batch.refine(estimate.x, window, prior, &frequencies);
+    if (refined.found) estimate = refined;
+  };
+  apart_.clear();
+  merge(batch, window, prior, frequencies, estimate);
+  if (set_strays_apart(frequencies, estimate)) refine();
+  for (int splits = 0; splits < options_.most_splits; ++splits) {
+    const IntervalScore interval = scan(frequencies, estimate);
+    if (interval.statistic <= options_.scan_threshold) break;
+    const bool long_enough = interval.end - interval.begin >= kFewestInARow;
+    if (options_.weigh_manoeuvres && long_enough && manoeuvre_explains_more(window, frequencies, estimate, interval))
+      break;
+    split(interval, frequencies);
+    refine();
+    merge(batch, window, prior, frequencies, estimate);
+  }
+}
+
+void FrequencyChangeBatch::find_levels_without(std::span<const std::size_t> outliers, TargetMotionBatch& batch,
+                                               const BearingWindow& window, DopplerWindow& frequencies,
+                                               const std::optional<BatchPrior>& prior, BatchEstimate& estimate) {
+  const BearingWindow rest = window.without(outliers);
+  const BatchEstimate better = batch.solve(rest, prior, &estimate.x, &frequencies);
+  if (!better.found) return;
+  estimate = better;
+  find_levels(batch, rest, frequencies, prior, estimate);
 }
 
 bool FrequencyChangeBatch::merge(TargetMotionBatch& batch, const BearingWindow& window,
@@ -138,6 +227,40 @@ IntervalScore FrequencyChangeBatch::scan(const DopplerWindow& frequencies, const
   return best;
 }
 
+// (One change of velocity has two unknowns and a time; one interval of another tone an unknown and two times.)
+bool FrequencyChangeBatch::manoeuvre_explains_more(const BearingWindow& window, const DopplerWindow& frequencies,
+                                                   const BatchEstimate& estimate, const IntervalScore& interval) const {
+  VelocityChangeScan changes(window, &frequencies, estimate);
+  if (changes.times() == 0) return false;
+  return 2.0 * (estimate.cost - changes.fit().cost) > interval.statistic;
+}
+
+// Outliers at the end of a window have no edge behind them, and a state that is hardly known gives way to them.
+bool FrequencyChangeBatch::set_strays_apart(DopplerWindow& frequencies, const BatchEstimate& estimate) {
+  frequencies.sources(estimate.x, estimate.time_s, sources_);
+  const int levels = frequencies.levels();
+  int fresh = levels;
+  level_.resize(frequencies.size());
+  for (std::size_t i = 0; i < frequencies.size(); ++i) level_[i] = frequencies.level(i);
+  for (int level = 0; level < levels; ++level) {
+    members_.clear();
+    residuals_.clear();
+    const double f0 = sources_[static_cast<std::size_t>(level)].frequency_hz;
+    for (std::size_t i = 0; i < frequencies.size(); ++i) {
+      if (frequencies.level(i) != level) continue;
+      const double shifted_hz = f0 * frequencies.shift(i, estimate.x, estimate.time_s).value;
+      members_.push_back(i);
+      residuals_.push_back((frequencies.frequency_hz(i) - shifted_hz) / frequencies.sigma_hz(i));
+    }
+    for (const Outlier& outlier : find_outliers_(residuals_)) {
+      level_[members_[outlier.at]] = fresh++;
+      apart_.push_back(std::minmax(members_.front(), members_[outlier.at]));
+    }
+  }
+  if (fresh > levels) frequencies.set_levels(level_);
+  return fresh > levels;
+}
+
 void FrequencyChangeBatch::split(const IntervalScore& interval, DopplerWindow& frequencies) {
   const int fresh = frequencies.levels();
   for (std::size_t i = 0; i < frequencies.size(); ++i) {
@@ -153,15 +276,11 @@ void FrequencyChangeBatch::list_changes(const DopplerWindow& frequencies, const 
   if (frequencies.size() > 0) last_level_ = frequencies.level(frequencies.size() - 1);
   if (!estimate.found) return;
   frequencies.sources(estimate.x, estimate.time_s, sources_);
-  int current = -1;
-  for (std::size_t i = 1; i < frequencies.size(); ++i) {
-    const int level = frequencies.level(i);
-    if (level == current || level != frequencies.level(i - 1)) continue;  // one alone is none
-    if (current >= 0)
-      changes_.push_back({frequencies.time_s(i - 1), sources_[static_cast<std::size_t>(level)].frequency_hz});
-    current = level;
-  }
-  if (current >= 0) last_level_ = current;
+  list_runs(frequencies, runs_);
+  for (std::size_t k = 1; k < runs_.size(); ++k)
+    changes_.push_back(
+        {frequencies.time_s(runs_[k].begin), sources_[static_cast<std::size_t>(runs_[k].level)].frequency_hz});
+  if (!runs_.empty()) last_level_ = runs_.back().level;
 }
 
 }  // namespace truebearing

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "truebearing/tma/outliers.hpp"
 #include "truebearing/tma/target_motion_batch.hpp"
 
 namespace truebearing {
@@ -30,6 +31,9 @@ struct FrequencyChangeOptions {
   double scan_threshold = 25.0;             ///< of s^2 / V, over all intervals
   double alike = 9.0;                       ///< likelihood ratio, 2 ln, below which two levels are one
   int most_splits = 8;                      ///< by the scan
+  /// Before the scan splits a level: is it the target that changed its velocity (velocity_change.hpp)? Where that
+  /// explains more, the tone is left in peace. Costs tens of milliseconds where there is something to split.
+  bool weigh_manoeuvres = false;
 };
 
 /// From this frequency on the source has another f0.
@@ -38,8 +42,22 @@ struct FrequencyChange {
   double frequency_hz;
 };
 
+/// Frequencies that keep one level, strays of other levels among them apart.
+struct LevelRun {
+  int level;
+  std::size_t begin, end;  ///< its first frequency, and one past its last
+  std::size_t count;       ///< of its own
+};
+/// In order of time. A level that is kept for less than four frequencies in a row is no level of the source: outliers
+/// come in twos and threes by chance. Where none is kept for longer, the longest is.
+void list_runs(const DopplerWindow& frequencies, std::vector<LevelRun>& runs);
+
 /// The number of edges so far, for each frequency. `gamma` in standard deviations of a difference.
 void number_segments(const DopplerWindow& frequencies, double gamma, std::vector<int>& segment);
+/// The same, but up to three in a row that are followed by one like those before are strays: segments of their own, past
+/// which that before goes on. Else outliers would cut a level into pieces whose means differ by chance, and the more
+/// pieces, the more. A jump hardly larger than gamma may be taken for one, and is left to the scan.
+void number_segments_past_strays(const DopplerWindow& frequencies, double gamma, std::vector<int>& segment);
 
 /// The interval whose f0 differs most from that of its level: the positions of its frequencies in the window, of which
 /// those of other levels do not count.
@@ -62,7 +80,7 @@ class FrequencyChangeBatch {
 
   /// False where they were left out.
   bool used_frequencies() const { return used_; }
-  /// A level of one frequency is an outlier and no change, or not yet.
+  /// Less than four frequencies in a row are outliers and no change, or not yet (list_runs).
   std::span<const FrequencyChange> changes() const { return changes_; }
   /// The level that the source has at the end.
   int last_level() const { return last_level_; }
@@ -74,6 +92,14 @@ class FrequencyChangeBatch {
   /// Makes levels one until no two are alike; false where there was nothing to do.
   bool merge(TargetMotionBatch& batch, const BearingWindow& window, const std::optional<BatchPrior>& prior,
              DopplerWindow& frequencies, BatchEstimate& estimate);
+  void find_levels(TargetMotionBatch& batch, const BearingWindow& window, DopplerWindow& frequencies,
+                   const std::optional<BatchPrior>& prior, BatchEstimate& estimate);
+  void find_levels_without(std::span<const std::size_t> outliers, TargetMotionBatch& batch, const BearingWindow& window,
+                           DopplerWindow& frequencies, const std::optional<BatchPrior>& prior, BatchEstimate& estimate);
+  bool manoeuvre_explains_more(const BearingWindow& window, const DopplerWindow& frequencies,
+                               const BatchEstimate& estimate, const IntervalScore& interval) const;
+  /// Each that does not belong to its neighbours of the same level; false where there is none.
+  bool set_strays_apart(DopplerWindow& frequencies, const BatchEstimate& estimate);
   void split(const IntervalScore& interval, DopplerWindow& frequencies);
   void list_changes(const DopplerWindow& frequencies, const BatchEstimate& estimate);
 
@@ -98,6 +124,10 @@ class FrequencyChangeBatch {
   std::vector<Ranked> ranked_;
   std::vector<SourceFrequency> sources_;
   std::vector<int> level_, merged_;
+  std::vector<LevelRun> runs_;
+  OutlierSearch find_outliers_;
+  std::vector<std::size_t> members_;
+  std::vector<double> residuals_;
   std::vector<std::pair<std::size_t, std::size_t>> apart_;
 };
 

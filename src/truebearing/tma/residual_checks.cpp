@@ -2,149 +2,183 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <vector>
 
 #include "truebearing/core/chi_square.hpp"
-#include "truebearing/core/linear_algebra.hpp"
+#include "truebearing/motion/constant_velocity.hpp"
+#include "truebearing/tma/motion_rows.hpp"
+#include "truebearing/tma/target_motion_batch.hpp"
 
 namespace truebearing {
 namespace {
 
-constexpr double kConfidence = 0.999;
+constexpr double kByChance = 1e-3;
 constexpr int kParameters = 4;
 
-// g' S^-1 g without the directions in which S is nothing but rounding: there a change would look like no change.
-double score(const Eigen::Vector2d& g, const Eigen::Matrix2d& S, double whole) {
-  const SymmetricModes<2> modes = symmetric_modes(S);
-  double sum = 0.0;
-  for (int i = 0; i < 2; ++i) {
-    const double projected = modes.vectors.col(i).dot(g);
-    if (modes.values[i] > 1e-9 * whole) sum += projected * projected / modes.values[i];
+int degrees_of_freedom(std::size_t bearings, const DopplerWindow* frequencies) {
+  const int m = static_cast<int>(bearings);
+  return frequencies ? m + static_cast<int>(frequencies->size()) - kParameters - frequencies->levels()
+                     : m - kParameters;
+}
+
+// Sum of squares of all rows, about an estimate of any kind.
+double sum_of_squares(const BearingWindow& window, const BatchEstimate& estimate, const DopplerWindow* frequencies) {
+  double sum = 2.0 * window.cartesian(estimate.x, estimate.time_s).cost;
+  if (!frequencies) return sum;
+  std::vector<SourceFrequency> sources;
+  frequencies->sources(estimate.x, estimate.time_s, sources);
+  for (std::size_t i = 0; i < frequencies->size(); ++i) {
+    const double f0 = sources[static_cast<std::size_t>(frequencies->level(i))].frequency_hz;
+    const double e_hz = frequencies->frequency_hz(i) - f0 * frequencies->shift(i, estimate.x, estimate.time_s).value;
+    sum += frequencies->weight(i) * e_hz * e_hz;
   }
   return sum;
 }
 
-// What the residuals r of one kind of measurement say of a change in velocity at change_s: sums of w G r, w G G' and
-// w G J', with G the change's row.
-struct ChangeSums {
-  Eigen::Vector2d g = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d GG = Eigen::Matrix2d::Zero();
-  Eigen::Matrix<double, 2, 4> GJ = Eigen::Matrix<double, 2, 4>::Zero();
-
-  void add(double w, double r, const Eigen::Vector2d& G, const Eigen::RowVector4d& J) {
-    g += w * r * G;
-    GG += w * G * G.transpose();
-    GJ += w * G * J;
+// Outliers pull at the estimate by which they are known, so both in turn until they agree.
+BearingWindow leave_out_outliers(const BearingWindow& window, const BatchEstimate& estimate,
+                                 const DopplerWindow* frequencies, ResidualChecks& checks) {
+  constexpr int kMostRounds = 6;
+  TargetMotionBatch batch;
+  OutlierSearch find_outliers;
+  BearingWindow rest = window;
+  checks.least_squares = estimate;
+  for (int round = 0; round < kMostRounds; ++round) {
+    const BatchEstimate better = batch.solve(rest, std::nullopt, &checks.least_squares.x, frequencies);
+    if (better.found) checks.least_squares = better;
+    const std::span<const Outlier> outliers = find_outliers(window, checks.least_squares);
+    const bool known = places(outliers) == places(checks.outliers);
+    checks.outliers.assign(outliers.begin(), outliers.end());
+    if (known) break;
+    rest = window.without(places(checks.outliers));
   }
-};
+  return rest;
+}
 
-// Frequencies at an estimate: what is left of them, and their rows of J.
-class FrequencyRows {
- public:
-  FrequencyRows(const DopplerWindow& window, const BatchEstimate& estimate) : window_(window) {
-    window.sources(estimate.x, estimate.time_s, sources_);
-    for (std::size_t i = 0; i < window.size(); ++i) {
-      const DopplerWindow::Shift shift = window.shift(i, estimate.x, estimate.time_s);
-      const double f0 = sources_[level(i)].frequency_hz;
-      rows_.push_back({window.time_s(i), window.time_s(i) - estimate.time_s, window.weight(i), shift.value,
-                       window.frequency_hz(i) - f0 * shift.value, f0 * shift.per_state});
+void check_whiteness(const MotionRows& rows, ResidualChecks& checks) {
+  constexpr double kRounding = 1e-12;  // of a sum of squares per residual: a millionth of sigma
+  double products = 0.0, squares = 0.0;
+  for (const std::span<const MotionRow> kind : {rows.bearings(), rows.frequencies()}) {
+    double previous = 0.0;
+    for (const MotionRow& row : kind) {
+      products += row.residual * previous;
+      squares += row.residual * row.residual;
+      previous = row.residual;
     }
   }
+  const double count = static_cast<double>(rows.all().size());
+  checks.lag_one =
+      squares > kRounding * count ? products / squares * std::sqrt(count) : std::numeric_limits<double>::quiet_NaN();
+  checks.white = !(std::abs(checks.lag_one) > normal_quantile(1.0 - 0.5 * kByChance));
+}
 
-  double normalised(std::size_t i) const { return rows_[i].residual_hz * std::sqrt(rows_[i].weight); }
+// What is left of each degree of freedom, no less than the noise is said to be.
+double noise_variance(double chi_square, int degrees_of_freedom) {
+  return std::max(1.0, chi_square / std::max(degrees_of_freedom, 1));
+}
 
-  Eigen::Matrix4d information() const {
-    Eigen::Matrix4d A = Eigen::Matrix4d::Zero();
-    std::vector<Eigen::RowVector4d> of_levels(sources_.size(), Eigen::RowVector4d::Zero());
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      A += rows_[i].weight * rows_[i].J.transpose() * rows_[i].J;
-      of_levels[level(i)] += rows_[i].weight * rows_[i].shift * rows_[i].J;
-    }
-    for (std::size_t l = 0; l < of_levels.size(); ++l)
-      A -= sources_[l].variance * of_levels[l].transpose() * of_levels[l];
-    return A;
-  }
-
-  /// Adds their sums, less what the f0s can take of them.
-  void add(double change_s, ChangeSums& sums) const {
-    std::vector<Eigen::Vector2d> taken(sources_.size(), Eigen::Vector2d::Zero());
-    std::vector<Eigen::RowVector4d> of_levels(sources_.size(), Eigen::RowVector4d::Zero());
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      const Row& row = rows_[i];
-      of_levels[level(i)] += row.weight * row.shift * row.J;
-      if (row.time_s <= change_s) continue;
-      // Of the velocity alone, and of the way that it makes since then.
-      const Eigen::Vector2d place = row.J.head<2>().transpose(), velocity = row.J.tail<2>().transpose() - row.t * place;
-      const Eigen::Vector2d G = (row.time_s - change_s) * place + velocity;
-      sums.add(row.weight, row.residual_hz, G, row.J);
-      taken[level(i)] += row.weight * row.shift * G;
-    }
-    for (std::size_t l = 0; l < sources_.size(); ++l) {
-      sums.GG -= sources_[l].variance * taken[l] * taken[l].transpose();
-      sums.GJ -= sources_[l].variance * taken[l] * of_levels[l];
-    }
-  }
-
- private:
-  struct Row {
-    double time_s, t, weight, shift, residual_hz;
-    Eigen::RowVector4d J;
+void look_for_a_change(VelocityChangeScan& scan, ResidualChecks& checks) {
+  constexpr double kWorthALook = 0.05;  // the chance that a steady target is fitted with a change at all
+  if (scan.times() == 0) return;
+  const double times = static_cast<double>(scan.times());
+  const VelocityChangeScan::Score largest = scan.largest_score();
+  const double chi_square = 2.0 * checks.least_squares.cost;
+  const auto in_units_of_noise = [&](double statistic) {
+    return statistic / noise_variance(chi_square - statistic, checks.rest.degrees_of_freedom - 2);
   };
-  std::size_t level(std::size_t i) const { return static_cast<std::size_t>(window_.level(i)); }
+  checks.manoeuvre = in_units_of_noise(largest.statistic);
+  checks.manoeuvre_s = largest.time_s;
+  if (!checks.rest.too_large && largest.statistic < -2.0 * std::log(kWorthALook / times)) return;
+  const VelocityChange change = scan.fit();
+  if (!std::isfinite(change.cost)) return;
+  checks.manoeuvre = in_units_of_noise(chi_square - 2.0 * change.cost);
+  checks.manoeuvre_s = change.time_s;
+  checks.manoeuvred = checks.manoeuvre > -2.0 * std::log(kByChance / times);
+  if (checks.manoeuvred) checks.change = change;
+}
 
-  const DopplerWindow& window_;
-  std::vector<SourceFrequency> sources_;
-  std::vector<Row> rows_;
-};
+// What an estimate gains where this is taken off all bearings.
+double gained_without(double bias_rad, const BearingWindow& window, const DopplerWindow* frequencies,
+                      const BatchEstimate& estimate) {
+  BearingWindow turned;
+  for (std::size_t i = 0; i < window.size(); ++i)
+    turned.add(window.time_s(i), window.bearing_rad(i) - bias_rad, 1.0 / std::sqrt(window.weight(i)), window.site_m(i));
+  const BatchEstimate better = TargetMotionBatch().solve(turned, std::nullopt, &estimate.x, frequencies);
+  return better.found ? 2.0 * (estimate.cost - better.cost) : 0.0;
+}
+
+void look_for_a_bias(const MotionRows& rows, const BearingWindow& window, const DopplerWindow* frequencies,
+                     ResidualChecks& checks) {
+  const auto of_bias = [](const MotionRow& row) {
+    Eigen::Matrix<double, 1, 5> j;
+    j << row.of_y, row.level < 0 ? row.per_unit : 0.0;
+    return j;
+  };
+  const NormalEquations<5> equations = rows.equations<5>(of_bias);
+  const Eigen::Matrix4d P = inverse_of_what_is_known(equations.A.topLeftCorner<4, 4>());
+  const Eigen::Vector4d coupling = equations.A.topRightCorner<4, 1>(), taken = P * coupling;
+  const double information = equations.A(4, 4) - coupling.dot(taken);
+  const BatchEstimate& estimate = checks.least_squares;
+  const ModifiedPolar& polar = rows.polar();
+  Eigen::Vector4d x = estimate.x;
+  x.head<2>() -= (estimate.time_s - polar.origin_s()) * x.tail<2>();
+  checks.bias.moves = ConstantVelocity<2, ContinuousWhiteNoise>{}.F(estimate.time_s - polar.origin_s()) *
+                      polar.jacobian(polar.from_cartesian(x)) * taken;
+  if (!(information > 1e-9 * equations.A(4, 4))) return;
+  checks.bias.sigma_rad = 1.0 / std::sqrt(information);
+  checks.bias.bias_rad = (equations.gradient(4) - taken.dot(equations.gradient.head<4>())) / information;
+  const auto is_seen = [&](double statistic) {
+    const double noise = noise_variance(checks.rest.chi_square - statistic, checks.rest.degrees_of_freedom - 1);
+    return statistic > noise * chi_square_quantile(1.0 - kByChance, 1.0);
+  };
+  // What the first order promises has to be there.
+  checks.bias.detected = is_seen(checks.bias.bias_rad * checks.bias.bias_rad * information) &&
+                         is_seen(gained_without(checks.bias.bias_rad, window, frequencies, estimate));
+}
+
+// Of residuals that a few parameters took a part of: by the share of their variance that was left to them.
+double sigmas_of(std::span<const MotionRow> rows, std::span<const double> leverages) {
+  double squares = 0.0, freedom = 0.0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    squares += rows[i].residual * rows[i].residual;
+    freedom += 1.0 - leverages[i];
+  }
+  return freedom > 0.5 ? std::sqrt(squares / freedom) : std::numeric_limits<double>::quiet_NaN();
+}
+
+void find_the_sigmas_that_fit(VelocityChangeScan& scan, ResidualChecks& checks) {
+  const MotionRows& rows = scan.rows();
+  const Eigen::Matrix4d A = rows.equations<4>([](const MotionRow& row) { return row.of_y; }).A;
+  const std::vector<double> leverages = rows.leverages(inverse_of_what_is_known(A));
+  const std::span<const MotionRow> left = checks.change ? scan.rows_of_the_fit().all() : rows.all();
+  const std::size_t m = rows.bearings().size();
+  checks.bearing_sigmas = sigmas_of(left.first(m), std::span(leverages).first(m));
+  checks.frequency_sigmas = sigmas_of(left.subspan(m), std::span(leverages).subspan(m));
+}
 
 }  // namespace
 
+SumOfSquares::SumOfSquares(double sum, int freedom)
+    : chi_square(sum),
+      degrees_of_freedom(freedom),
+      too_large(!(sum <= chi_square_quantile(1.0 - kByChance, std::max(freedom, 1)))),
+      too_small(sum < chi_square_quantile(kByChance, std::max(freedom, 1))) {}
+
 ResidualChecks check_residuals(const BearingWindow& window, const BatchEstimate& estimate,
                                const DopplerWindow* frequencies) {
-  constexpr std::size_t kTimes = 40, kMargin = 3;
-  const std::size_t m = window.size(), n = frequencies ? frequencies->size() : 0;
-  const double origin_s = estimate.time_s;
-  std::optional<FrequencyRows> rows;
-  if (frequencies) rows.emplace(*frequencies, estimate);
   ResidualChecks checks;
-  checks.degrees_of_freedom = static_cast<int>(m + n) - kParameters - (frequencies ? frequencies->levels() : 0);
+  const SumOfSquares all(sum_of_squares(window, estimate, frequencies), degrees_of_freedom(window.size(), frequencies));
+  checks.chi_square = all.chi_square;
+  checks.degrees_of_freedom = all.degrees_of_freedom;
+  checks.fits = all.fits();
+  checks.too_small = all.too_small;
 
-  double products = 0.0;
-  const auto sum_up = [&](std::size_t count, const auto& normalised) {
-    double previous = 0.0;
-    for (std::size_t i = 0; i < count; ++i) {
-      const double e = normalised(i);
-      checks.chi_square += e * e;
-      products += e * previous;
-      previous = e;
-    }
-  };
-  sum_up(m, [&](std::size_t i) { return window.residual(i, estimate.x, origin_s) * std::sqrt(window.weight(i)); });
-  sum_up(n, [&](std::size_t i) { return rows->normalised(i); });
-  checks.lag_one = products / checks.chi_square * std::sqrt(static_cast<double>(m + n));
-  checks.fits = checks.chi_square <= chi_square_quantile(kConfidence, checks.degrees_of_freedom);
-  checks.white = std::abs(checks.lag_one) <= normal_quantile(0.5 + 0.5 * kConfidence);
-
-  Eigen::Matrix4d information = window.cartesian(estimate.x, origin_s).A;
-  if (rows) information += rows->information();
-  const Eigen::Matrix4d P = covariance_of(information);
-  const std::size_t step = std::max<std::size_t>(1, m / kTimes);
-  int looked_at = 0;
-  for (std::size_t change = kMargin; change + kMargin < m; change += step, ++looked_at) {
-    ChangeSums sums;
-    for (std::size_t i = change + 1; i < m; ++i) {
-      const Eigen::RowVector4d J = window.jacobian(i, estimate.x, origin_s);
-      const Eigen::Vector2d G = (window.time_s(i) - window.time_s(change)) * J.head<2>().transpose();
-      sums.add(window.weight(i), window.residual(i, estimate.x, origin_s), G, J);
-    }
-    if (rows) rows->add(window.time_s(change), sums);
-    const double statistic = score(sums.g, sums.GG - sums.GJ * P * sums.GJ.transpose(), sums.GG.trace());
-    if (statistic <= checks.manoeuvre) continue;
-    checks.manoeuvre = statistic;
-    checks.manoeuvre_s = window.time_s(change);
-  }
-  if (looked_at > 0) checks.manoeuvred = checks.manoeuvre > -2.0 * std::log((1.0 - kConfidence) / looked_at);
+  const BearingWindow rest = leave_out_outliers(window, estimate, frequencies, checks);
+  checks.rest = SumOfSquares(2.0 * checks.least_squares.cost, degrees_of_freedom(rest.size(), frequencies));
+  VelocityChangeScan scan(rest, frequencies, checks.least_squares);
+  check_whiteness(scan.rows(), checks);
+  look_for_a_change(scan, checks);
+  look_for_a_bias(scan.rows(), rest, frequencies, checks);
+  find_the_sigmas_that_fit(scan, checks);
   return checks;
 }
 

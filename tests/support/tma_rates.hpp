@@ -1,0 +1,110 @@
+// How often target-motion analysis is right about many simulated logs: manoeuvres and jumps of the tone that were none,
+// outliers that were found, turns that were found and when.
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "truebearing/core/angle.hpp"
+#include "truebearing/core/random.hpp"
+#include "truebearing/simulation/scenario.hpp"
+#include "truebearing/tma/frequency_changes.hpp"
+#include "truebearing/tma/residual_checks.hpp"
+#include "truebearing/tma/target_motion_batch.hpp"
+
+namespace truebearing::testing {
+
+struct TmaCase {
+  std::string method = "ml";   ///< ml, map, huber
+  double end_s = 1e9;          ///< of the window
+  double outlier_share = 0.0;  ///< of bearings, and of frequencies
+  double outlier_sigmas = 10.0;
+};
+
+struct TmaRates {
+  int logs = 0, manoeuvres = 0, jumps = 0, unfit = 0, coloured = 0, biased = 0;
+  int outliers = 0, outliers_found = 0, outliers_invented = 0, logs_with_all_found = 0;
+  std::vector<double> change_s;  ///< of the manoeuvres
+
+  TmaRates& operator+=(const TmaRates& more) {
+    logs += more.logs;
+    manoeuvres += more.manoeuvres;
+    jumps += more.jumps;
+    unfit += more.unfit;
+    coloured += more.coloured;
+    biased += more.biased;
+    outliers += more.outliers;
+    outliers_found += more.outliers_found;
+    outliers_invented += more.outliers_invented;
+    logs_with_all_found += more.logs_with_all_found;
+    change_s.insert(change_s.end(), more.change_s.begin(), more.change_s.end());
+    return *this;
+  }
+};
+
+/// One log as TMA sees it, with its outliers.
+class TmaLog {
+ public:
+  TmaLog(const Recording& recording, const TmaCase& what, std::uint64_t run) {
+    RandomStream stream({what.outlier_share > 0.0 ? 99u : 98u, Role::evaluation, run}, StreamId::test);
+    for (const Measurement& m : recording.measurements) {
+      if (m.time_s > what.end_s) break;
+      const auto outlier = [&] {
+        const bool is_one = stream.uniform() < what.outlier_share;
+        const double side = stream.uniform() < 0.5 ? -1.0 : 1.0;
+        return is_one ? side * what.outlier_sigmas : 0.0;
+      };
+      if (std::isfinite(m.z[0])) {
+        const double off = outlier();
+        if (off != 0.0) outliers_.push_back(bearings_.size());
+        bearings_.add(m.time_s, m.z[0] + off * m.sigma[0], m.sigma[0], m.sensor->position_m);
+      }
+      if (m.z.size() == 2 && std::isfinite(m.z[1]))
+        frequencies_.add(m.time_s, m.z[1] + outlier() * m.sigma[1], m.sigma[1], *m.sensor);
+    }
+  }
+
+  void examine(const TmaCase& what, TmaRates& rates) {
+    TargetMotionBatch batch({.huber_sigmas = what.method == "huber" ? 2.0 : std::numeric_limits<double>::infinity()});
+    std::optional<BatchPrior> prior;
+    if (what.method == "map") prior.emplace().velocity_information = Eigen::Matrix2d::Identity() / 25.0;
+    FrequencyChangeBatch changes({.alike = 25.0, .weigh_manoeuvres = true});
+    DopplerWindow* heard = frequencies_.size() > 0 ? &frequencies_ : nullptr;
+    const BatchEstimate estimate =
+        heard ? changes.solve(batch, bearings_, *heard, prior) : batch.solve(bearings_, prior);
+    const ResidualChecks checks = check_residuals(bearings_, estimate, heard);
+    ++rates.logs;
+    rates.manoeuvres += checks.manoeuvred;
+    rates.jumps += heard && !changes.changes().empty();
+    rates.unfit += !checks.rest.fits();
+    rates.coloured += !checks.white;
+    rates.biased += checks.bias.detected;
+    if (checks.manoeuvred) rates.change_s.push_back(checks.manoeuvre_s);
+    int found = 0;
+    for (const Outlier& outlier : checks.outliers)
+      found += std::find(outliers_.begin(), outliers_.end(), outlier.at) != outliers_.end();
+    rates.outliers += static_cast<int>(outliers_.size());
+    rates.outliers_found += found;
+    rates.outliers_invented += static_cast<int>(checks.outliers.size()) - found;
+    rates.logs_with_all_found += found == static_cast<int>(outliers_.size());
+  }
+
+ private:
+  BearingWindow bearings_;
+  DopplerWindow frequencies_;
+  std::vector<std::size_t> outliers_;
+};
+
+inline TmaRates rates_of(const Scenario& scenario, const TmaCase& what, int logs, std::uint64_t seed) {
+  TmaRates rates;
+  for (int run = 0; run < logs; ++run) {
+    const auto number = static_cast<std::uint64_t>(run);
+    TmaLog(scenario.simulate({seed, Role::evaluation, number}), what, number).examine(what, rates);
+  }
+  return rates;
+}
+
+}  // namespace truebearing::testing

@@ -86,7 +86,7 @@ void BearingsBatchTracker::add(const Measurement& measurement) {
 }
 
 bool BearingsBatchTracker::has_frequency(const Measurement& measurement) const {
-  return options_.frequency && measurement.z.size() == 2 && std::isfinite(measurement.z[1]);
+  return options_.frequency && measurement.z.size() == 2 && std::isfinite(measurement.z[1]) && measurement.z[1] > 0.0;
 }
 
 bool BearingsBatchTracker::is_due(double time_s) {

@@ -43,6 +43,8 @@ struct TmaArguments {
 struct Windows {
   BearingWindow bearings;
   DopplerWindow frequencies;
+  std::vector<SensorState> own_ship;              // at each bearing
+  std::vector<std::size_t> line, frequency_line;  // of the log
 };
 
 Recording read_log(const TmaArguments& options) {
@@ -84,24 +86,29 @@ void check_velocities(const DopplerWindow& window, const std::string& log) {
 }
 
 Windows windows_of(const Recording& recording, const TmaArguments& options, TmaAnswer& answer) {
-  Windows windows{{}, DopplerWindow(options.sound_mps)};
+  Windows windows{{}, DopplerWindow(options.sound_mps), {}, {}, {}};
   const bool has_frequencies = recording.measured.size() == 2 && !options.bearings_only;
   for (std::size_t k = 0; k < recording.measurements.size(); ++k) {
     const Measurement& measurement = recording.measurements[k];
     if (measurement.time_s < options.from_s || measurement.time_s > options.to_s) continue;
     const bool has_bearing = std::isfinite(measurement.z[0]);
-    const bool has_frequency = has_frequencies && std::isfinite(measurement.z[1]);
+    const bool has_frequency = has_frequencies && std::isfinite(measurement.z[1]) && measurement.z[1] > 0.0;
     answer.missing += !has_bearing;
     answer.missing_frequencies += has_frequencies && !has_frequency;
     if (!has_bearing && !has_frequency) continue;
     if (!measurement.sensor)
       throw InputError(options.log, "does not say where own ship was", "columns sensor_east_m, sensor_north_m");
-    if (has_frequency) add_frequency(measurement, options, windows.frequencies);
+    if (has_frequency) {
+      add_frequency(measurement, options, windows.frequencies);
+      windows.frequency_line.push_back(recording.line[k]);
+    }
     if (!has_bearing) continue;
     if (measurement.sigma.size() == 0 && !(options.sigma_deg > 0.0))
       throw InputError(options.log, "does not say how good its bearings are", "a column bearing_sigma_deg, or --sigma");
     const double sigma_rad = options.sigma_deg > 0.0 ? radians(options.sigma_deg) : measurement.sigma[0];
     windows.bearings.add(measurement.time_s, measurement.z[0], sigma_rad, measurement.sensor->position_m);
+    windows.own_ship.push_back(*measurement.sensor);
+    windows.line.push_back(recording.line[k]);
     answer.own_ship = *measurement.sensor;
     if (recording.truth_space && recording.truth[0].x[k].head<4>().allFinite()) answer.truth = recording.truth[0].x[k];
   }
@@ -125,23 +132,34 @@ BatchPrior prior_of(const TmaArguments& options, const BearingWindow& window) {
 
 FrequencyChangeOptions changes_of(const TmaArguments& options) {
   using Handling = FrequencyChangeOptions::Handling;
-  FrequencyChangeOptions changes;
+  // No level that the scan would not have found is kept.
+  FrequencyChangeOptions changes{.alike = 25.0, .weigh_manoeuvres = true};
   if (options.frequency_changes == "segments") changes.handling = Handling::segments;
   if (options.frequency_changes == "switch") changes.handling = Handling::bearings_only;
   if (options.frequency_changes == "ignored") changes.handling = Handling::ignored;
   return changes;
 }
 
+// Round ranges (1, 2, 5, 10, ...) about as far as own ship sailed and farther; kilometres where it did not move.
+std::vector<double> round_ranges_m(const BearingWindow& window) {
+  double way_m = 0.0;
+  for (std::size_t i = 0; i < window.size(); ++i) way_m = std::max(way_m, (window.site_m(i) - window.site_m(0)).norm());
+  const double decade_m = way_m > 0.0 ? std::pow(10.0, std::floor(std::log10(way_m))) : 1000.0;
+  std::vector<double> ranges_m;
+  for (const double factor : {1.0, 2.0, 5.0, 10.0, 20.0, 50.0}) ranges_m.push_back(factor * decade_m);
+  return ranges_m;
+}
+
 // The state that explains the data best, at each of some ranges at the last bearing.
 std::vector<Eigen::Vector4d> hypotheses(const BearingWindow& window, const DopplerWindow* frequencies,
                                         const TargetMotionBatchOptions& options) {
-  constexpr double kRanges_m[] = {1000.0, 2000.0, 5000.0, 10000.0, 20000.0, 50000.0};
-  constexpr double kExactly_m = 0.1;
+  constexpr double kExactly = 1e-4;
   std::vector<Eigen::Vector4d> states;
   TargetMotionBatch batch(options);
-  for (const double range_m : kRanges_m) {
+  for (const double range_m : round_ranges_m(window)) {
     BatchPrior prior;
-    prior.range = BatchPrior::Range{range_m, kExactly_m, window.site_m(window.size() - 1), window.last_time_s()};
+    prior.range =
+        BatchPrior::Range{range_m, kExactly * range_m, window.site_m(window.size() - 1), window.last_time_s()};
     const BatchEstimate estimate = batch.solve(window, prior, nullptr, frequencies);
     if (estimate.found) states.push_back(estimate.x);
   }
@@ -149,45 +167,57 @@ std::vector<Eigen::Vector4d> hypotheses(const BearingWindow& window, const Doppl
 }
 
 // The times over which the source kept a level, outliers apart.
-void list_levels(const DopplerWindow& window, TmaSource& source, const BatchEstimate& estimate) {
+void list_levels(const Windows& windows, TmaSource& source, TmaAnswer& answer) {
+  const DopplerWindow& window = windows.frequencies;
   std::vector<SourceFrequency> sources;
-  window.sources(estimate.x, estimate.time_s, sources);
-  int current = -1;
+  window.sources(answer.estimate.x, answer.estimate.time_s, sources);
+  std::vector<LevelRun> runs;
+  list_runs(window, runs);
+  for (const LevelRun& run : runs) {
+    const SourceFrequency& f0 = sources[static_cast<std::size_t>(run.level)];
+    source.levels.push_back({window.time_s(run.begin), window.time_s(run.end - 1), run.count, f0.frequency_hz,
+                             std::sqrt(f0.variance_with(answer.estimate.P))});
+  }
   for (std::size_t i = 0; i < window.size(); ++i) {
-    const int level = window.level(i);
-    const bool goes_on = i + 1 < window.size() && window.level(i + 1) == level;
-    if (level != current && !goes_on) {
-      ++source.outliers;
-      continue;
-    }
-    const SourceFrequency& f0 = sources[static_cast<std::size_t>(level)];
-    if (level != current)
-      source.levels.push_back({window.time_s(i), 0.0, 0, f0.frequency_hz, std::sqrt(f0.variance_with(estimate.P))});
-    current = level;
-    source.levels.back().to_s = window.time_s(i);
-    ++source.levels.back().count;
+    const auto holds = [&](const LevelRun& run) {
+      return i >= run.begin && i < run.end && window.level(i) == run.level;
+    };
+    if (std::any_of(runs.begin(), runs.end(), holds)) continue;
+    ++source.outliers;
+    answer.frequency_outliers.push_back({window.time_s(i), windows.frequency_line[i], std::nan("")});
   }
 }
 
-void solve(Windows& windows, const TmaArguments& options, TmaAnswer& answer) {
-  const BearingWindow& bearings = windows.bearings;
-  if (options.is_cho()) {
-    ChoOptions cho;
-    if (options.method == "gauss_newton") cho.method = ChoOptions::Method::gauss_newton;
-    if (options.method == "levenberg") cho.method = ChoOptions::Method::levenberg;
-    answer.estimate = solve_cho(bearings, cho);
-    if (answer.estimate.found) answer.residuals = check_residuals(bearings, answer.estimate);
-    return;
-  }
-  const TargetMotionBatchOptions batch_options{.huber_sigmas = options.huber_sigmas};
-  TargetMotionBatch batch(batch_options);
+double root_mean_square_sigma(std::size_t count, const auto& weight) {
+  double squares = 0.0;
+  for (std::size_t i = 0; i < count; ++i) squares += 1.0 / weight(i);
+  return std::sqrt(squares / static_cast<double>(count));
+}
+
+// By a method of Cho's. What the bearings determine is a matter of theirs and not of the method.
+void solve_by_cho(const BearingWindow& bearings, const TmaArguments& options, TmaAnswer& answer) {
+  ChoOptions cho;
+  if (options.method == "gauss_newton") cho.method = ChoOptions::Method::gauss_newton;
+  if (options.method == "levenberg") cho.method = ChoOptions::Method::levenberg;
+  answer.estimate = solve_cho(bearings, cho);
+  TargetMotionBatch batch;
+  const BatchEstimate least_squares = batch.solve(bearings);
+  if (!answer.estimate.found || !least_squares.found) return;
+  answer.above_least_squares = answer.estimate.cost - least_squares.cost;
+  answer.observability = batch.observability();
+}
+
+// By maximum likelihood or maximum a posteriori; the frequencies that it used.
+const DopplerWindow* solve_by_batch(Windows& windows, const TmaArguments& options, TmaAnswer& answer) {
+  TargetMotionBatch batch({.huber_sigmas = options.huber_sigmas});
   answer.has_prior = options.method == "map";
+  answer.is_robust = std::isfinite(options.huber_sigmas);
   std::optional<BatchPrior> prior;
-  if (answer.has_prior) prior = prior_of(options, bearings);
+  if (answer.has_prior) prior = prior_of(options, windows.bearings);
   const DopplerWindow* used = nullptr;
   if (windows.frequencies.size() > 0) {
     FrequencyChangeBatch with_frequencies(changes_of(options));
-    answer.estimate = with_frequencies.solve(batch, bearings, windows.frequencies, prior);
+    answer.estimate = with_frequencies.solve(batch, windows.bearings, windows.frequencies, prior);
     if (with_frequencies.used_frequencies()) used = &windows.frequencies;
     TmaSource& source = answer.source.emplace();
     source.used = used;
@@ -195,15 +225,88 @@ void solve(Windows& windows, const TmaArguments& options, TmaAnswer& answer) {
     source.looked_for = options.frequency_changes != "ignored";
     source.frequencies = windows.frequencies.size();
     source.changes.assign(with_frequencies.changes().begin(), with_frequencies.changes().end());
-    if (answer.estimate.found) list_levels(windows.frequencies, source, answer.estimate);
+    if (answer.estimate.found) list_levels(windows, source, answer);
   } else {
-    answer.estimate = batch.solve(bearings, prior);
+    answer.estimate = batch.solve(windows.bearings, prior);
   }
-  if (!answer.estimate.found) return;
-  answer.residuals = check_residuals(bearings, answer.estimate, used);
+  if (!answer.estimate.found) return used;
   answer.observability = batch.observability();
   answer.ambiguities = batch.ambiguities();
-  if (!answer.range_is_known()) answer.hypotheses = hypotheses(bearings, used, batch_options);
+  return used;
+}
+
+// What the bearings and frequencies between two times say by themselves.
+TmaStretch stretch_of(const Windows& windows, const DopplerWindow* used, double from_s, double to_s) {
+  constexpr std::size_t kFewest = 5;
+  TmaStretch stretch;
+  stretch.from_s = from_s;
+  stretch.to_s = to_s;
+  const auto within = [&](double time_s) { return time_s >= from_s && time_s <= to_s; };
+  std::vector<std::size_t> others;
+  for (std::size_t i = 0; i < windows.bearings.size(); ++i) {
+    if (within(windows.bearings.time_s(i)))
+      stretch.own_ship = windows.own_ship[i];
+    else
+      others.push_back(i);
+  }
+  const BearingWindow bearings = windows.bearings.without(others);
+  if (bearings.size() < kFewest) return stretch;
+  DopplerWindow frequencies(windows.frequencies.sound_mps());
+  for (std::size_t i = 0; used && i < used->size(); ++i)
+    if (within(used->time_s(i)))
+      frequencies.add(used->time_s(i), used->frequency_hz(i), used->sigma_hz(i), used->sensor(i));
+  TargetMotionBatch batch;
+  FrequencyChangeBatch changes;
+  stretch.estimate = frequencies.size() > 0 ? changes.solve(batch, bearings, frequencies) : batch.solve(bearings);
+  if (!stretch.estimate.found || !batch.observability().observable()) return stretch;
+  const ResidualChecks checks =
+      check_residuals(bearings, stretch.estimate, frequencies.size() > 0 ? &frequencies : nullptr);
+  stretch.range_is_known = checks.rest.fits() && !checks.manoeuvred;
+  return stretch;
+}
+
+// Before and after a change of velocity. A turn takes a while: farther from it where the rest is not yet, or no more,
+// one course and speed.
+std::vector<TmaStretch> stretches_of(const Windows& windows, const DopplerWindow* used, const VelocityChange& change) {
+  constexpr int kMostSteps = 4;
+  const double first_s = windows.bearings.first_time_s(), last_s = windows.bearings.last_time_s();
+  const double step_s = std::max(change.latest_s - change.earliest_s, 0.01 * (last_s - first_s));
+  TmaStretch before, after;
+  for (int k = 1; k <= kMostSteps && !before.range_is_known; ++k)
+    before = stretch_of(windows, used, first_s, change.earliest_s - k * step_s);
+  for (int k = 1; k <= kMostSteps && !after.range_is_known; ++k)
+    after = stretch_of(windows, used, change.latest_s + k * step_s, last_s);
+  return {before, after};
+}
+
+// What the residuals say, and what else the measurements may be where one course and speed does not explain them.
+void examine(const Windows& windows, const DopplerWindow* used, TmaAnswer& answer) {
+  const BearingWindow& bearings = windows.bearings;
+  ResidualChecks& checks = answer.residuals;
+  checks = check_residuals(bearings, answer.estimate, used);
+  for (const Outlier& outlier : checks.outliers)
+    answer.outliers.push_back({bearings.time_s(outlier.at), windows.line[outlier.at], outlier.sigmas});
+  answer.bearing_sigma_rad = root_mean_square_sigma(bearings.size(), [&](std::size_t i) { return bearings.weight(i); });
+  if (used)
+    answer.frequency_sigma_hz = root_mean_square_sigma(used->size(), [&](std::size_t i) { return used->weight(i); });
+  if (checks.change) answer.stretches = stretches_of(windows, used, *checks.change);
+  if (used) return;
+  if (checks.rest.too_large) answer.two_contacts = find_two_contacts(bearings, checks.least_squares);
+  if (checks.rest.too_large || !answer.range_is_known())
+    answer.reversed = find_reversed(bearings, checks.least_squares);
+}
+
+void solve(Windows& windows, const TmaArguments& options, TmaAnswer& answer) {
+  const DopplerWindow* used = nullptr;
+  if (options.is_cho())
+    solve_by_cho(windows.bearings, options, answer);
+  else
+    used = solve_by_batch(windows, options, answer);
+  if (!answer.estimate.found) return;
+  examine(windows, used, answer);
+  if (answer.observability && !answer.range_is_known())
+    answer.hypotheses = hypotheses(windows.bearings, used, {.huber_sigmas = options.huber_sigmas});
+  find_causes(answer);
 }
 
 void tma(const TmaArguments& options) {

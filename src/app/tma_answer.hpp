@@ -8,6 +8,7 @@
 
 #include "truebearing/measurement/measurement.hpp"
 #include "truebearing/tma/frequency_changes.hpp"
+#include "truebearing/tma/other_explanations.hpp"
 #include "truebearing/tma/residual_checks.hpp"
 
 namespace truebearing {
@@ -28,6 +29,28 @@ struct TmaSource {
   std::vector<FrequencyChange> changes;
 };
 
+/// A measurement that does not belong to its neighbours.
+struct TmaOutlier {
+  double time_s;
+  std::size_t line;  ///< of the log
+  double sigmas;     ///< off its neighbours; of a frequency NaN
+};
+
+/// A stretch of the log by itself, before or after a manoeuvre, and what its bearings say.
+struct TmaStretch {
+  double from_s = 0.0, to_s = 0.0;
+  bool range_is_known = false;  ///< and it keeps one course and speed, by its residuals
+  BatchEstimate estimate{};
+  SensorState own_ship{};  ///< at its last bearing
+};
+
+/// What the measurements look like besides a target on one course and speed.
+struct TmaCause {
+  std::string kind;   ///< outliers, manoeuvre, two_contacts, back_bearings, bearing_bias, noise_larger, ...
+  double likelihood;  ///< 2 ln of the likelihood ratio to one course and speed, less ln m for each unknown
+  std::string says;
+};
+
 struct TmaAnswer {
   std::string log;
   std::string method;
@@ -37,18 +60,55 @@ struct TmaAnswer {
   SensorState own_ship;  ///< at the last bearing
   BatchEstimate estimate;
   ResidualChecks residuals;
-  std::optional<Observability> observability;  ///< of ml and map
+  std::optional<Observability> observability;  ///< nothing where no numbers came out
   bool has_prior = false;
+  bool is_robust = false;  ///< outliers count for little
   int missing_frequencies = 0;
   std::optional<TmaSource> source;  ///< where frequencies were measured
+
+  std::vector<TmaOutlier> outliers, frequency_outliers;
+  std::vector<TmaStretch> stretches;  ///< before and after the manoeuvre, where there was one
+  std::optional<TwoContacts> two_contacts;
+  std::optional<BatchEstimate> reversed;  ///< of all bearings turned by 180 degrees, where that fits better
+  double bearing_sigma_rad = 0.0, frequency_sigma_hz = 0.0;  ///< root mean squares of what was claimed
+  /// 1/2 the sum of squares that a method ended above the least squares.
+  double above_least_squares = 0.0;
+  std::vector<TmaCause> causes;  ///< of what is wrong, in order of likelihood; made by find_causes()
 
   std::vector<Ambiguity> ambiguities;
   std::vector<Eigen::Vector4d> hypotheses;  ///< where the range is open: the state at each of some ranges
   std::optional<BoundedVector> truth;       ///< at the last bearing; its fifth component is the source's frequency
 
   /// Do the bearings determine the range?
-  bool range_is_known() const { return !observability || observability->observable(); }
+  bool range_is_known() const { return observability && observability->observable() && estimate.P.allFinite(); }
+  /// Is there anything to say of it? A prior answers where the bearings do not, and is said to.
+  bool has_motion() const { return (range_is_known() || has_prior) && estimate.P.allFinite(); }
 };
+
+/// What is wrong with the answer, if anything.
+void find_causes(TmaAnswer& answer);
+/// In one line.
+std::string verdict(const TmaAnswer& answer);
+
+/// A state as seen from own ship.
+struct Motion {
+  double range_m, bearing_deg, course_deg, speed_mps;
+
+  Motion(const Eigen::Vector4d& x, const SensorState& own_ship);
+};
+
+/// Standard deviations of the same.
+struct MotionSigmas {
+  double range_m, bearing_deg, course_deg, speed_mps;
+
+  MotionSigmas(const Eigen::Vector4d& x, const Eigen::Matrix4d& P, const SensorState& own_ship);
+};
+
+/// Range, course and speed with their standard deviations, in words.
+std::string motion_with_sigmas(const Eigen::Vector4d& x, const Eigen::Matrix4d& P, const SensorState& own_ship);
+
+/// A time, whole where it is seconds of an epoch.
+std::string seconds(double time_s);
 
 std::string tma_text(const TmaAnswer& answer);
 std::string tma_json(const TmaAnswer& answer);

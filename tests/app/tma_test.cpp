@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "tests/app/program.hpp"
 #include "tests/support/bearing_frequency_runs.hpp"
@@ -170,6 +172,147 @@ TEST(TmaCommand, FrequenciesThatCannotBeUsedAreOneLineErrors) {
   }
   EXPECT_EQ(run(folder, "tma log.csv --method gauss_newton --bearings-only").status, 0);
   EXPECT_EQ(run(folder, "tma still.csv --bearings-only").status, 0);
+}
+
+// A log in which one cell of a row is replaced.
+std::string with_cell(const std::string& log, std::size_t line, std::size_t column, const std::string& cell) {
+  std::istringstream in(log);
+  std::string changed, row;
+  for (std::size_t k = 1; std::getline(in, row); ++k) {
+    if (k == line) {
+      std::size_t begin = 0;
+      for (std::size_t c = 0; c < column; ++c) begin = row.find(',', begin) + 1;
+      row.replace(begin, row.find(',', begin) - begin, cell);
+    }
+    changed += row + "\n";
+  }
+  return changed;
+}
+
+TEST(TmaCommand, NamesTheRowOfAnOutlierAndNoManoeuvre) {
+  const TemporaryFolder folder;
+  folder.write("log.csv", with_cell(log_until(1000.0), 42, 1, "511"));
+  const Outcome text = run(folder, "tma log.csv");
+  EXPECT_THAT(text.out.substr(0, text.out.find('\n')), AllOf(HasSubstr("outlier"), HasSubstr("line 42")));
+  EXPECT_THAT(text.out, HasSubstr("no sign that the target changed its velocity"));
+  const json answer = json::parse(run(folder, "tma log.csv --json -").out);
+  EXPECT_FALSE(answer["manoeuvre"]["detected"]);
+  EXPECT_EQ(answer["outliers"]["bearings"].size(), 1u);
+  EXPECT_EQ(answer["outliers"]["bearings"][0]["line"], 42);
+  EXPECT_EQ(answer["causes"][0]["kind"], "outliers");
+  EXPECT_EQ(answer["verdict"], text.out.substr(0, text.out.find('\n')));
+}
+
+TEST(TmaCommand, SeesNoManoeuvreOfASteadyTargetByAnyMethod) {
+  const TemporaryFolder folder;
+  folder.write("log.csv", log_until(1000.0));
+  folder.write("open.csv", log_until(300.0));
+  for (const char* method :
+       {"--method ml", "--huber 2", "--method map", "--method levenberg", "--method levenberg_marquardt"})
+    for (const char* log : {"log.csv", "open.csv"}) {
+      const json answer = json::parse(run(folder, fmt::format("tma {} {} --json -", log, method)).out);
+      EXPECT_FALSE(answer["manoeuvre"]["detected"]) << method << log;
+      EXPECT_EQ(answer["range_determined"], std::string(log) == "log.csv") << method << log;
+    }
+}
+
+TEST(TmaCommand, SaysNullWhereNothingIsKnown) {
+  const TemporaryFolder folder;
+  folder.write("log.csv", log_until(200.0));
+  const json answer = json::parse(run(folder, "tma log.csv --json -").out);
+  for (const char* key : {"range_m", "course_deg", "speed_mps", "east_m", "north_mps"}) {
+    EXPECT_TRUE(answer["estimate"][key].is_null()) << key;
+    EXPECT_TRUE(answer["standard_deviation"][key].is_null()) << key;
+  }
+  EXPECT_TRUE(answer["estimate"]["bearing_deg"].is_number());
+  EXPECT_TRUE(answer["ellipse95"]["semi_major_m"].is_null());
+}
+
+TEST(TmaCommand, SaysWhichSigmaWouldFit) {
+  const TemporaryFolder folder;
+  folder.write("log.csv", log_until(1000.0));
+  for (const auto& [sigma, kind] : {std::pair("5", "noise_smaller"), std::pair("0.1", "noise_larger")}) {
+    const json answer = json::parse(run(folder, fmt::format("tma log.csv --json - --sigma {}", sigma)).out);
+    EXPECT_FALSE(answer["residuals"]["fits"]) << sigma;
+    EXPECT_NEAR(answer["residuals"]["bearing_sigma_that_fits_deg"].get<double>(), 1.0, 0.15) << sigma;
+    ASSERT_EQ(answer["causes"].size(), 1u) << sigma;
+    EXPECT_EQ(answer["causes"][0]["kind"], kind);
+  }
+}
+
+TEST(TmaCommand, OfBearingsThatAreAllTheSameSaysSo) {
+  const TemporaryFolder folder;
+  std::string log = "time_s,bearing_deg,bearing_sigma_deg,sensor_east_m,sensor_north_m\n";
+  for (int i = 0; i < 30; ++i) log += fmt::format("{},45,1,{},0\n", 4 * i, 20 * i);
+  folder.write("log.csv", log);
+  const Outcome text = run(folder, "tma log.csv");
+  EXPECT_THAT(text.out,
+              AllOf(HasSubstr("SMALLER THAN THE NOISE"), Not(HasSubstr("nan")), Not(HasSubstr("as it should"))));
+  const json answer = json::parse(run(folder, "tma log.csv --json -").out);
+  EXPECT_TRUE(answer["residuals"]["lag_one_sigmas"].is_null());
+  EXPECT_TRUE(answer["residuals"]["white"].is_null());
+}
+
+TEST(TmaCommand, PrintsSecondsOfAnEpochWhole) {
+  const TemporaryFolder folder;
+  std::istringstream in(log_until(1000.0));
+  std::string log, row;
+  std::getline(in, row);
+  log = row + "\n";
+  while (std::getline(in, row)) {
+    const std::size_t comma = row.find(',');
+    log += fmt::format("{:.0f}{}\n", 1.7e9 + std::stod(row.substr(0, comma)), row.substr(comma));
+  }
+  folder.write("log.csv", log);
+  EXPECT_THAT(run(folder, "tma log.csv").out, AllOf(HasSubstr("from 1700000000 to 1700001000 s"),
+                                                    HasSubstr("at 1700001000 s"), Not(HasSubstr("e+09"))));
+}
+
+TEST(TmaCommand, TakesFrequenciesThatAreNotPositiveForMissing) {
+  const TemporaryFolder folder;
+  std::string log = frequency_log(testing::jump(0.0));
+  for (const std::size_t line : {5u, 25u, 45u}) log = with_cell(log, line, 2, line == 25u ? "-100" : "0");
+  folder.write("log.csv", log);
+  const json answer = json::parse(run(folder, "tma log.csv --json -").out);
+  EXPECT_EQ(answer["source"]["missing"], 18);
+  EXPECT_EQ(answer["source"]["outliers"], 0);
+}
+
+TEST(TmaCommand, OfBackBearingsSaysThatTheyMayBe) {
+  const TemporaryFolder folder;
+  std::istringstream in(log_until(1500.0));
+  std::string log, row;
+  std::getline(in, row);
+  log = row + "\n";
+  while (std::getline(in, row)) {
+    const std::size_t begin = row.find(',') + 1, end = row.find(',', begin);
+    if (end == begin) continue;
+    log += fmt::format("{}{}{}\n", row.substr(0, begin), 180.0 + std::stod(row.substr(begin, end - begin)),
+                       row.substr(end));
+  }
+  folder.write("log.csv", log);
+  EXPECT_EQ(json::parse(run(folder, "tma log.csv --json -").out)["causes"][0]["kind"], "back_bearings");
+}
+
+TEST(TmaCommand, AdviceAfterAManoeuvreDeterminesTheRange) {
+  const TemporaryFolder folder;
+  folder.write("turn.toml", testing::kTurningTarget);
+  ASSERT_EQ(run(folder, "simulate turn.toml -o logs").status, 0);
+  const json answer = json::parse(run(folder, "tma logs/run_0000.csv --json -").out);
+  EXPECT_NEAR(answer["manoeuvre"]["time_s"].get<double>(), 1015.0, 60.0);
+  ASSERT_TRUE(answer["manoeuvre"]["range_determined"]);
+  const json &with_change = answer["manoeuvre"]["estimate"], &truth = answer["truth"];
+  EXPECT_NEAR(with_change["range_m"].get<double>(), truth["range_m"].get<double>(),
+              0.2 * truth["range_m"].get<double>());
+  EXPECT_NEAR(with_change["course_deg"].get<double>(), truth["course_deg"].get<double>(), 10.0);
+  for (const json& stretch : answer["manoeuvre"]["stretches"]) {
+    if (!stretch["range_determined"]) continue;
+    const std::string cut = fmt::format("tma logs/run_0000.csv --from {} --to {} --json -",
+                                        stretch["from_s"].get<double>(), stretch["to_s"].get<double>());
+    const json again = json::parse(run(folder, cut).out);
+    EXPECT_TRUE(again["range_determined"]);
+    EXPECT_FALSE(again["manoeuvre"]["detected"]);
+  }
 }
 
 TEST(TmaCommand, BadLogsAreOneLineErrors) {

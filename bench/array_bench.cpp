@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Microseconds of an interval of 30 snapshots, for the trackers of a line array's targets and what they consist of:
 //     past_plain            PAST alone as its paper has it, in Eigen's complex matrices: what the others are held to
 //     past                  ours, alone

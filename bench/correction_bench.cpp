@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a correction costs on top of the filters that it reads: the trackers of the 1-D radar family (data/studies/
 // radar_1d_family.toml) on one stream of measurements. The difference of `corrected` and `ensemble` is the correction's
 // own share; `bank` is the bound that stands beside it.

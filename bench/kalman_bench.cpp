@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Kalman filters of the library against the same algebra written out by hand. Each iteration runs one filter over the
 // whole stream from its initial state; the state after every step is consumed.
 //     bench_kalman --benchmark_repetitions=9 --benchmark_report_aggregates_only=true

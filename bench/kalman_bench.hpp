@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The problem that all Kalman filter benchmarks share: one stream of measurements of a target at constant velocity, the
 // step of 1 s, process and measurement noise. Times are per predict + update.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The benchmarks of kalman_bench.cpp with the extended Kalman filter of Orocos BFL on its linear models.
 #include <benchmark/benchmark.h>
 #include <bfl/filter/extendedkalmanfilter.h>

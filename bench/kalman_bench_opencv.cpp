@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The benchmarks of kalman_bench.cpp with OpenCV's cv::KalmanFilter.
 #include <benchmark/benchmark.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Nanoseconds per step of every filter in the plane, of the IMM with six modes, and of a correction with 32 rules in
 // the track frame, on one stream of positions from a turning target. Filters are timed bare; trackers (`tracker_*`)
 // with all that a step record takes. The difference of `tracker_corrected` and `tracker_ensemble` is the correction's

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Milliseconds for a bearings-only solution: by least squares from 225 starts, k <= 10 iterations each, and in modified
 // polar coordinates from three starts and from one.
 //     bench_tma --benchmark_repetitions=9 --benchmark_enable_random_interleaving=true

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The problem that all batch solvers for bearings share: the first m bearings of Cho's first scenario that are not
 // masked by a turn, sigma 1 degree, and the 225 starts of his grid. Times are per whole solve of all starts.
 #pragma once

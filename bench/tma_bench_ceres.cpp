@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ceres Solver: one residual block with an analytic Jacobian, its Levenberg-Marquardt with its own tolerances, one
 // thread.
 #include <benchmark/benchmark.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # truebearing_options(TARGET): the warnings, optimisation and sanitizers that every target of the house shares.
 function(truebearing_options target)
   target_compile_features(${target} PUBLIC cxx_std_20)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # What truebearing stands on. All of it is in Debian 12; the installed package config finds the same again.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(fmt 9 REQUIRED)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # cmake --install: program with its studies, models, man page and completion; headers, libraries and the package config,
 # so that find_package(truebearing) gives truebearing::truebearing, truebearing::training and truebearing::app, and
 # pkg-config the first of them.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # cpack: truebearing_VERSION_ARCHITECTURE.deb, the program with its studies, models, man page and completion.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME truebearing)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What most translation units read and no change of ours touches, compiled once for each library (CMake's precompiled
 // headers). No file relies on it: each includes what it uses.
 #pragma once

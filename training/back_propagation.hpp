@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The paper's own training (Lee et al., section 3): a grid partition of the normalised inputs, and all parameters -
 // term centres, term widths, consequents - by back-propagation of the teacher signal, eq. (13), at a fixed rate. A
 // labelled variant: scattered rules by variable projection come to the same error with far fewer rules.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How much wider than the filter says the corrected estimate's error is, learned per rule: s_j (M) is the phi-weighted
 // mean over training rows of r = e' P^-1 e / n, the normalised squared error of the corrected estimate (1 for a
 // consistent one). At an input the covariance is multiplied by sum_j phi_j s_j.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The covariance head of residual moments: each rule holds Sigma_j (p x p), the phi-weighted mean over training rows of
 // e e' with e the error of the corrected estimate, normalised. Closed form. At an input the covariance is
 // sum_j phi_j Sigma_j, positive semi-definite since the phi_j are a partition of one.

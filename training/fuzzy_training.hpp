@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the trainers of the fuzzy network share: the training data, its normalisation and its mirror image.
 //
 // N rows, d features, p outputs, M rules. Features X (N x d) and teacher signal Y (N x p) are raw; the network sees

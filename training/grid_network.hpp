@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The fuzzy network on a grid partition, as back-propagation sees it: terms are shared by all rules of the grid that
 // use them, so their gradients add up. With terms normalised per input, mu_bar, the strengths are phi = prod_i
 // mu_bar_i.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // k-means by Lloyd's iteration from k-means++ seeds (Arthur and Vassilvitskii 2007): where the rules of a scattered
 // fuzzy network start. Points (N x d), centres (k x d).
 #pragma once

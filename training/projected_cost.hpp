@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The variable-projection cost of a fuzzy network with scattered rules (Golub and Pereyra 1973): the consequents W are
 // eliminated by ridge least squares, and what is left is a function of centres c and widths s (both M x d) alone,
 //     J(c, s) = min_W sum_o weight_o ( 1/n |t_o - Phi w_o|^2 + lambda/M |w_o|^2 ).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The teacher: the same simulator, trackers and feature extractor as at run time, with the labels (truth minus
 // estimate) joined afterwards by time and, where there are several targets, by track.
 #pragma once

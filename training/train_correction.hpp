@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From a study to a trained correction: teacher set -> network -> gate and covariance -> model.
 #pragma once
 

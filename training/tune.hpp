@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tuning the baselines: the numbers that a study names under `tune` (Q, R, P0, ...) fitted to training draws, so that a
 // correction is compared with the best that its filter can do. Minimises the sum over scored quantities of ln RMSE.
 #pragma once

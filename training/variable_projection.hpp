@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The default training of a fuzzy network with scattered rules: k-means centres, widths from the distance to the
 // nearest neighbour, consequents by ridge least squares inside the loop (variable projection, Golub and Pereyra 1973),
 // centres and log widths by Adam (Kingma and Ba 2015) on the projected cost with a cosine schedule, and a last least

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A corrected tracker in a program of your own. Reads lines "time_s position_m" from standard input:
 //     embed data/studies/radar_1d_family.toml < measurements.txt
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The filter alone, without a study: fixed sizes, no heap, no virtual call. A target at 200 m/s is measured every
 // second with a standard deviation of 50 m.
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The alpha-beta filter: a tracker on a line whose gain K = [alpha, beta / dt]' (2 x 1) is chosen, not computed.
 //     predict  x = F x,  P = F P F' + Q          update  x = x + K nu,  P = (I - K H) P (I - K H)' + K R K'
 // Joseph's form holds for any gain, so P is the covariance that this gain earns. Bar-Shalom, Li and Kirubarajan 2001,

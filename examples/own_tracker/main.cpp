@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The program `truebearing` with a tracker of one's own: registered once, it can be named in any study, beside the
 // house's trackers and under a correction.
 //     example_own_tracker compare examples/own_tracker/own_tracker.toml --retrain

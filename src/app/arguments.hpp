@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a subcommand takes from the command line, said without the library that reads it: CLI11 is compiled in
 // arguments.cpp alone.
 #pragma once

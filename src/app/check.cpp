@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // truebearing check FILE: of a study, is it valid, and what would it run; of a recorded log, what it holds.
 #include <filesystem>
 #include <fmt/format.h>

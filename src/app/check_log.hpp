@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // truebearing check LOG.csv: what a recorded log holds, and whether it can be used.
 #pragma once
 

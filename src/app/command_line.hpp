@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The command line as one function, so that a program that registers trackers of its own has all of it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // truebearing compare STUDY.toml: the study's trackers on Monte Carlo runs, scored against the truth.
 #include <cstdint>
 #include <filesystem>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What comes with the program: share/truebearing/data with scenarios and studies, share/truebearing/models.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/log_options.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What every subcommand that reads a recorded log takes to read it by: --columns, --track-id, --sort-window.
 #pragma once
 

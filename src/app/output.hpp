@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the subcommands share of their output: files or standard output, and progress on a terminal.
 #pragma once
 

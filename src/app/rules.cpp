@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // truebearing rules MODEL: the learned rules, as sentences.
 #include <fmt/format.h>
 #include <memory>

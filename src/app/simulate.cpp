@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // truebearing simulate SCENARIO.toml --seed S --runs N -o DIR [--track FILE --track-id K --track-from S]:
 // measurement logs with truth.
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The subcommands, each in a file of its own. add_...() declares its arguments and what it runs.
 #pragma once
 

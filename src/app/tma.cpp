@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // truebearing tma LOG.csv: from bearings, frequencies where the log has them, and own ship's track to the target's
 // range, course and speed, and to the tone of its source.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What `truebearing tma` answers: the target's range, course and speed with their uncertainty, the tone of its source
 // where that was measured, what the residuals say, and what the geometry leaves open. As text and as JSON.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is wrong with an answer of `truebearing tma`, in order of likelihood, and the line that sums it up.
 #include <algorithm>
 #include <cmath>

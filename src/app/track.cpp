@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // truebearing track STUDY.toml LOG: the study's trackers on a recorded log, row by row as it comes. With truth in the
 // log, their errors; without, what can still be said: NIS and its consistency, whiteness, rejected and missing
 // measurements. And what the trackers noticed beside their estimates.

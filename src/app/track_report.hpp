@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What `truebearing track` says of the trackers that it ran, for people.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // truebearing train STUDY.toml [-o MODEL]: teacher signals -> network -> model file.
 #include <cstdint>
 #include <filesystem>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // truebearing tune STUDY.toml [-o FILE]: baseline parameters fitted to training draws.
 #include <cstdint>
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tuning and training a whole study: what `tune`, `train` and `compare --retrain` share.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Targets at a line array that come and go, held to what the defaults of `lifetimes` were tuned to; two standard errors
 // are allowed on top.
 #include <gtest/gtest.h>

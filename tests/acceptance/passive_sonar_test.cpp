@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Passive sonar held to the bars of its problem, on fewer runs than they are meant for: two standard errors are allowed
 // on top.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The 1-D radar studies on their committed models, held to the bars of the problem. Fewer runs than the bars are meant
 // for: two standard errors are allowed on top.
 #include <gtest/gtest.h>

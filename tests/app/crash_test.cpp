@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What becomes of files when the program is killed, the disk is full or two of it write at once: the old file or the new one.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

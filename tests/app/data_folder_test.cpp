@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -65,8 +66,8 @@ TEST(DataFolder, StudiesAndScenariosAreFoundByNameFromAnywhere) {
 TEST(DataFolder, FileInTheCurrentFolderComesFirst) {
   const TemporaryFolder folder;
   write_study(folder);
-  std::filesystem::copy(folder.path() / "small.toml", folder.path() / "radar_1d_family");
-  EXPECT_THAT(run(folder, "check radar_1d_family").out, HasSubstr("small: 20 runs"));
+  std::filesystem::copy(folder.path() / "small.toml", folder.path() / "radar_1d_family.toml");
+  EXPECT_THAT(run(folder, "check radar_1d_family.toml").out, HasSubstr("small: 20 runs"));
 }
 
 TEST(DataFolder, HelpThatCannotBeWrittenIsAnError) {

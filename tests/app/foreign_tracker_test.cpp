@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A tracker that is not ours, OpenCV's Kalman filter, is corrected from its step logs alone: train, track and compare,
 // as its owner would. Its targets are those of manoeuvre_2d.
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs the built program as a user does: in a shell, in a folder of its own.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every command that the README prints runs, with few runs; and so does its study.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Recordings as they come, given to the program.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -191,7 +192,7 @@ std::string with_cell(const std::string& log, std::size_t line, std::size_t colu
 
 TEST(TmaCommand, NamesTheRowOfAnOutlierAndNoManoeuvre) {
   const TemporaryFolder folder;
-  folder.write("log.csv", with_cell(log_until(1000.0), 42, 1, "511"));
+  folder.write("log.csv", with_cell(log_until(1000.0), 42, 1, "500"));
   const Outcome text = run(folder, "tma log.csv");
   EXPECT_THAT(text.out.substr(0, text.out.find('\n')), AllOf(HasSubstr("outlier"), HasSubstr("line 42")));
   EXPECT_THAT(text.out, HasSubstr("no sign that the target changed its velocity"));

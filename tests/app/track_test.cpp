@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `truebearing track` on logs of any length, on streams, and what it says to people.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

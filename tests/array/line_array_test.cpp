@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "truebearing/array/line_array.hpp"
 
 #include <gtest/gtest.h>

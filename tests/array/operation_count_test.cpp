@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the angular innovations of an interval cost, in the currency of the paper's table: additions, subtractions,
 // multiplications and divisions of real numbers, for all N targets.
 #include <gtest/gtest.h>

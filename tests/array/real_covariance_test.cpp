@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "truebearing/array/real_covariance.hpp"
 
 #include <gtest/gtest.h>

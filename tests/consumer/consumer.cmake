@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Installs the built tree to a prefix of its own, builds project/ against it with other compiler flags, and wants the
 # output that the same program gives in the build tree.
 function(run)

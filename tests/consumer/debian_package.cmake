@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Packs the built tree, unpacks the package to a folder and runs what is in it: the program, and one of its studies by name.
 function(run)
   execute_process(COMMAND ${ARGN} WORKING_DIRECTORY ${work} OUTPUT_VARIABLE output COMMAND_ERROR_IS_FATAL ANY)

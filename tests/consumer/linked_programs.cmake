@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Every program and library that is built or installed looks for libraries in folders of absolute paths, or beside itself:
 # an empty or relative element of its RUNPATH would stand for the folder that its user stands in. And it is linked as
 # truebearing_harden() says.

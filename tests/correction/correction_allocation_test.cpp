@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A corrected tracker that runs allocates nothing.
 #include <gtest/gtest.h>
 

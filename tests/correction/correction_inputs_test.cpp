@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "truebearing/correction/correction_inputs.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A correction in the plane, whole: track frame, outputs in standard deviations, residual moments, gate, referee,
 // kappa.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Features that remember how a target sailed before it left a mode.
 #include <gtest/gtest.h>
 

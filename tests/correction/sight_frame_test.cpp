@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The frame along the line of sight, and the features that only bearings want: in a turned or mirrored picture they
 // are what their parity says.
 #include <gmock/gmock.h>

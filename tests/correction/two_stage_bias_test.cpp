@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Friedland's separate-bias estimation (IEEE Trans. Automatic Control AC-14, 1969), against the companion that features
 // compare with. The error b of the base's prior mean is a constant bias, b ~ N(0, M). It reaches the base's errors
 // through

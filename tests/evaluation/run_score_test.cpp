@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "truebearing/evaluation/run_score.hpp"
 
 #include <gmock/gmock.h>

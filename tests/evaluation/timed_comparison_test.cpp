@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Figures at given times, through a whole comparison of trackers whose errors are known.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # A comparison that trains a correction of the user's own tracker: every tracker has finite errors, and the correction
 # makes the user's smaller.
 execute_process(COMMAND ${PROGRAM} compare ${STUDY} --retrain --runs 50 --quiet --json - OUTPUT_VARIABLE json

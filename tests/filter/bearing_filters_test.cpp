@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What every filter of bearings promises, on runs of one family: extended, unscented, modified-gain and log-polar.
 #include <gtest/gtest.h>
 

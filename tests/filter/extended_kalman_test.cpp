@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The Kalman filter across a nonlinear motion.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #ifdef NDEBUG
 #error "Eigen checks for allocations by assertion: compile without NDEBUG"
 #endif

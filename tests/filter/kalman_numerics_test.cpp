@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ill-conditioned problems from the literature: Dyer and McReynolds 1969 (Grewal and Andrews, example 7.2) and Bierman
 // 1977.
 #include <gtest/gtest.h>

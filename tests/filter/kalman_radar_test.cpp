@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The plain filter of the radar problem of Lee et al., in expectation over the measurement noise: with the gains known
 // the error obeys e = (I - K H) F e + K v, so that bias and covariance of the error follow exactly, without a draw.
 #include <gtest/gtest.h>

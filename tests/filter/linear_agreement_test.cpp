@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // On a linear problem every filter is the Kalman filter: one test for all of them, against the recursion written out.
 #include <gtest/gtest.h>
 

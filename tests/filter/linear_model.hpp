@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A linear measurement model and a linear motion model of any given matrices, for tests; and a linear motion model that
 // says it is not linear.
 #pragma once

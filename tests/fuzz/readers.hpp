@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Everything that reads what a stranger may have written, on any bytes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // For libFuzzer: `./run fuzz SECONDS`. What it finds belongs into corpus/, where the tests replay it.
 #include <cstddef>
 

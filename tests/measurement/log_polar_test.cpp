@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "truebearing/measurement/log_polar.hpp"
 
 #include <gtest/gtest.h>

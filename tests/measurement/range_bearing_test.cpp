@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "truebearing/measurement/range_bearing.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "truebearing/measurement/range_to_site.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "truebearing/motion/constant_velocity.hpp"
 
 #include <gtest/gtest.h>

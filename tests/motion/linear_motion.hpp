@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What every linear motion model must do, for tests.
 #pragma once
 

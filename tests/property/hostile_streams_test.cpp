@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Streams of hostile values through every tracker of every study that measures numbers: what is published is finite or
 // `failed`, no variance is below zero, a reset gives the same bits, and an empty row leaves no trace.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What every tracker of positions promises, whatever filter and motion are behind it, over random runs: made by name,
 // as a study makes them.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "truebearing/recording/geographic_track.hpp"
 
 #include <gmock/gmock.h>

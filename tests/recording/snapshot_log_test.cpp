@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "truebearing/recording/snapshot_log.hpp"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "truebearing/recording/velocity_truth.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "truebearing/simulation/bearings_of_track.hpp"
 
 #include <gmock/gmock.h>

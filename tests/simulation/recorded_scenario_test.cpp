@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "truebearing/simulation/recorded_scenario.hpp"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "truebearing/simulation/turn_phases.hpp"
 
 #include <gmock/gmock.h>

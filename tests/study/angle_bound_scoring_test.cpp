@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "truebearing/study/angle_bound_scoring.hpp"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every filter with every motion and every measurement that it makes sense with, as a study makes them: each runs, stays
 // a covariance and is consistent on its own model; those of one linear problem agree.
 #include <gtest/gtest.h>

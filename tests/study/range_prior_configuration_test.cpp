@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "truebearing/study/range_prior_configuration.hpp"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // How often this thread has taken memory from the heap. Every allocation goes through malloc in the end: operator new,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A comparison of trackers of two targets, of which one is near, one is nearer, and one has swapped its tracks.
 #pragma once
 

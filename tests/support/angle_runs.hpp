@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs of a line array for the tests of trackers of angles: of scenarios in data/, and of targets that are written
 // down.
 #pragma once

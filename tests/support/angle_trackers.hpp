@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The trackers of angles as the problem's studies have them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Several targets told apart by their angles, and a tracker that says of them what it is told to: for the tests of
 // everything that stands behind a tracker of several targets.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A short recording of a line array with two targets, for tests of what carries it.
 #pragma once
 

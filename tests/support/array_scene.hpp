@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a line array hears of targets that are written down: exact covariances, and intervals drawn from them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bearings and frequencies for tests: Kim and Song's scenario. Angles are compass courses: so the bound at 1050 s is
 // 155 m with frequencies and 531 m without.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bearings for tests: windows made from scenarios, and from legs written down.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Trackers of bearings for the tests of several rooms.
 #pragma once
 

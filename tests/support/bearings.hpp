@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A target seen in bearings from an own ship that turns: the small cast of the tests of bearings-only trackers.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Comparisons of a study's own trackers for acceptance tests.
 #pragma once
 

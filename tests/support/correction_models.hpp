@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Correction models made by hand or at random, for tests that want one without training it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a call that must fail says: for tests that hold an error to where, what and what would be valid.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Trackers and scenarios that do what a test tells them to.
 #pragma once
 

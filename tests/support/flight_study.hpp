@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A study of recorded flights, as the text of its file: one plain filter, its own little scenario, positions measured to 50 m.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A target seen in bearings and heard at a frequency: the small cast of the tests of passive sonar.
 #pragma once
 

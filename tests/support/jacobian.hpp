@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An independent derivative for tests of Jacobians: central differences.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Trackers, measurements and logs on a line: the small cast that the tests of several rooms share.
 #pragma once
 

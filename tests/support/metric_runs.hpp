@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What metric families are given, by hand: for their tests.
 #pragma once
 

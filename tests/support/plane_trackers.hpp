@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Trackers and a correction in the plane, for the tests of several rooms.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A small study of the 1-D radar, as the text of its files: quick to run, with everything in it that a study can have.
 #pragma once
 

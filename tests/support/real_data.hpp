@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Recorded data for trials. It is not part of the project; a test that needs a file skips where it is absent.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Intervals for statistical tests: each is left by chance once in a hundred thousand seeds, and the seeds are fixed.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How often target-motion analysis is right about many simulated logs: manoeuvres and jumps of the tone that were none,
 // outliers that were found, turns that were found and when.
 #pragma once

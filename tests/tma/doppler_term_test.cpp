@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "truebearing/tma/doppler_term.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "truebearing/tma/levenberg_marquardt.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "truebearing/tma/target_motion_batch.hpp"
 
 #include <gtest/gtest.h>

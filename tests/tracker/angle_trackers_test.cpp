@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What trackers of angles have in common: what they make of missing and broken intervals, and symmetries.
 #include <gtest/gtest.h>
 

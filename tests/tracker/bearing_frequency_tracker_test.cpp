@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "truebearing/tracker/bearing_frequency_sensor.hpp"
 
 #include <gtest/gtest.h>

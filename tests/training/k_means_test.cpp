@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "training/k_means.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "training/train_correction.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Multiple hypotheses on which target is which after two of them met. The posterior of two targets that cross has two
 // modes, one for either way out; a filter that follows the wrong one swaps them. Each hypothesis is a joint filter;
 // when two of its targets are predicted to be close it is scored again from its posterior with the pair exchanged, and

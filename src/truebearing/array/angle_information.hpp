@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The Fisher information of the angles theta (N) and log powers l (N) of N uncorrelated signals in one interval of a
 // line array, the noise power known and 1: of Ns snapshots of covariance R = sum_n snr_n a_n a_n' + I it is (Stoica and
 // Nehorai 1990)

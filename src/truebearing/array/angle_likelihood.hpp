@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The stochastic likelihood of N uncorrelated signals at angles theta with powers exp(l), in noise of power sigma^2,
 // and its scores: R = sum_n exp(l_n) a_n a_n' + sigma^2 I, all of it real (real_covariance.hpp).
 //     log L = -Ns [log det R + tr(R^-1 R_hat)]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The loops of the stochastic likelihood (angle_likelihood.hpp, whose letters these are), in SIMD instructions where
 // the processor has them. Matrices are column-major without gaps; `rows` is padded to whole lanes (simd_lanes.hpp).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The angular innovation of a target from the signal subspace: by how much the angle has to move from its prediction
 // for the steering vector a + b d_theta to lie in the span of W (M x N). Three ways to the same least-squares estimate:
 //     RyuInnovation         all unknowns at once: d_theta and the N complex coordinates (Ryu, Lee and Lee 1999)

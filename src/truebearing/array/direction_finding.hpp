@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The angles of N signals from the signal subspace of one interval, each interval by itself: what a tracker begins
 // with.
 //     MUSIC   peaks of 1 / |P_perp a(theta)|^2, on a grid and refined (Schmidt 1986)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What an estimator can use of one interval's snapshots. A sensor that gives zeros or NaN throughout is dead and left
 // out; of what is left, a snapshot with a value that is not finite is dropped. Real and imaginary parts are kept apart,
 // snapshot by snapshot, padded with zeros to whole lanes (simd_lanes.hpp).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "truebearing/array/joint_angle_filter.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // All targets' angles in one filter: x = [theta (N), l (N), rate (N)], l the logarithms of the signals' powers over
 // that of the noise, and one covariance P (3N x 3N). An interval is used whole: its stochastic likelihood is maximised
 // together with the prior by scoring, so that no angle has to be picked from a spectrum, and none associated.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The small dense algebra of the joint angle filter (joint_angle_filter.hpp, whose letters these are), in SIMD
 // instructions where the processor has them. Matrices are column-major without gaps; above the diagonal of a root
 // stands anything.

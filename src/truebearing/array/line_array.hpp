@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A uniform line array: M sensors, neighbours `spacing_wavelengths` apart. Angles are from broadside, in radians.
 //     a(theta) (M): exp(j 2 pi d/lambda (m - 1) sin theta), Ryu, Lee and Lee 2001, equation (5)
 //     b(theta) = d a / d theta (M), equation (10)

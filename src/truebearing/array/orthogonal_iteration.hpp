@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One orthogonal iteration per interval: W <- orthonormal basis of R W, with R the sample covariance of the interval's
 // snapshots (Golub and Van Loan, section 8.2.4). Begun with the span of the interval before it follows the subspace
 // without looking at anything older.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "truebearing/array/outer_product_kernel.hpp"
 
 #include "truebearing/core/simd_lanes.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The outer product of a few columns with themselves, in SIMD instructions where the processor has them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One pass of projection approximation subspace tracking over snapshots (projection_approximation.hpp, whose letters
 // these are), in SIMD instructions where the processor has them.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // PAST, projection approximation subspace tracking (Yang 1995, table I): the N columns of W (M x N) span the signal
 // subspace, snapshot by snapshot, with what is older weighted down by beta.
 //     y = W^H x,  h = P y,  g = h / (beta + y^H h),  P = Tri{P - g h^H} / beta,  W = W + (x - W y) g^H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sample covariance of a line array's snapshots in real numbers. The covariance of uncorrelated signals at a
 // uniform line array is centro-Hermitian, and a unitary transformation of pairs of sensors, one as far on this side of
 // the middle as the other on that,

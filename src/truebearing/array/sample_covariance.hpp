@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sample covariance of one interval, complex (M x M): what subspace methods that work on a whole interval look at,
 // to begin with or instead of tracking.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Angles. Inside the program every angle is in radians; bearings run clockwise from North unless a model says
 // otherwise.
 #pragma once

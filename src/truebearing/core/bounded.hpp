@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Vectors and matrices whose size is known at run time but bounded at compile time: no heap, cheap to pass.
 // States, measurements and covariances cross the seams of the house in these.
 #pragma once

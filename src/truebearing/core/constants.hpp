@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The two numbers that say "not known" and "no limit".
 #pragma once
 

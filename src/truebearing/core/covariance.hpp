@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Covariance matrices: validity, Mahalanobis distance. No inverse is ever formed.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bad input: a file, a key, an option. One exception type for all of it; the command line prints it in one line.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Eigen's decompositions, compiled once. Each takes the compiler seconds, and most files want no more of one than a
 // solution; they include this and not Eigen's headers. Sizes N that are known beforehand: those instantiated at the end
 // of linear_algebra.cpp.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Text of files and arguments as messages show it: whatever it holds, one line that leaves a terminal alone.
 #pragma once
 

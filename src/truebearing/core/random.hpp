@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random numbers: counter-based (Philox 4x64-10, Salmon et al. 2011), so that a stream is a pure function of its key
 // and Monte Carlo runs can be computed in any order on any thread.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One loop nest compiled twice: for any processor, and for those with AVX2 and fused multiply-add, chosen at run time.
 //     TRUEBEARING_FOR_AVX2(name, (parameters), (arguments))
 // defines name(parameters), which calls the always-inline function name_loops(arguments) in one of the two. The file

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Four doubles that are worked on together, in the vector extension of GCC and Clang: a register of AVX, two of SSE2.
 // What is padded to kLanes rows can be loaded in these without a rest. References, because without AVX there is no
 // agreed way to pass them by value; everything is inlined into loops of simd_dispatch.hpp.

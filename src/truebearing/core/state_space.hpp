@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the components of a state mean: their names with units, and the quantities that errors are reported in.
 // A quantity is one or more components whose error is taken as a 2-norm (the position in a plane, say).
 #pragma once

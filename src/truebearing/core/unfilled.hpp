@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // For optional::emplace(), which by itself would first fill with zeros all that a block of a record has room for.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From a small number known at run time to one known at compile time.
 #pragma once
 

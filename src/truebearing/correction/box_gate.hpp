@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The box gate: how far a step lies inside the box that the training data filled. The sides of the box are the
 // network's inputs; the intervals at which the base used measurements; and the disagreement: the Mahalanobis distance
 // between what the network wants and the reference, under the sum of the two covariances. A target that the inputs alone

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // CorrectedTracker: an ensemble and a correction of it, which together are a Tracker like any other.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Correction: a function of the records of an ensemble,
 //
 //     x_corrected = x_reference + G d,  d = limit_kappa(x_base + T' D network(features) - x_reference)

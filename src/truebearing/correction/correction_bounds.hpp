@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // CorrectionBounds: what keeps a correction within bounds while it runs. No part of it enters the training: it stands
 // in the study, and changing it asks for no new model.
 #pragma once

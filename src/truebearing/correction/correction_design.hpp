@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // CorrectionDesign: what a study asks of a correction and a model was trained for: which trackers it looks at, through
 // which features, and in which frame and units it answers. The two must be the same.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // CorrectionInputs: what the network of a correction is told of an ensemble's step, and in which units it answers.
 // Training and tracking share this one class, so that a network meets what it was taught on.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // CorrectionModel: all that a trained correction is made of, as it stands in a model file. Immutable while it runs.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A feature: one input of a correction network, computed from step records alone, so that truth cannot leak into it.
 #pragma once
 

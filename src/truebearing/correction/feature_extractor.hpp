@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // FeatureExtractor: from the records of a base tracker and its companions to the inputs of a network. Training and
 // tracking share this one class, so that both see the same numbers.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The kinds of features: their names, what each needs, how it reads. Their formulas are in feature_extractor.cpp; a new
 // kind is a name here, a row of the table below, and a formula there.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The frame that a correction works in. Where a target flies to does not matter to how a filter lags behind it: in the
 // track frame errors and innovations are along and across the base's estimated velocity, so that what was learnt on one
 // course holds on all of them. To a sensor of bearings it matters how a target is seen: in the sight frame they are

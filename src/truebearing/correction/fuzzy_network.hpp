@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The normalized fuzzy neural network (NFNN) of Chao and Teng 1995 as Lee et al. use it, eqs. (11) and (12): rule j
 // says "IF u_1 is A_1j AND ... AND u_d is A_dj THEN y = w_j" with Gaussian terms
 //     mu_ij(u_i) = exp(-(u_i - c_ji)^2 / (2 s_ji^2)),

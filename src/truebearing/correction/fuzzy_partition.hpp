@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A grid partition for the fuzzy network, as Fig. 3 of Lee et al.: every input has its own list of Gaussian terms, and
 // there is a rule for every combination of terms. On such a full grid normalising each input's terms equals
 // normalising their products over the rules (Chao and Teng 1995), the network's softmax.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // IntervalMemory: how often a tracker has lately used a measurement, and how long ago. A network that was taught at one
 // period knows nothing of another, nor of outages; this is what its gate sees of them (box_gate.hpp).
 #pragma once

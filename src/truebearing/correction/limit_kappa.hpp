@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The proven bound. Whatever a network says, the published estimate is at most kappa standard deviations of the reference
 // away from the reference; and where the reference's covariance is not safely positive definite, it is the reference.
 #pragma once

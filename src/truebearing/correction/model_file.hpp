@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The model file: a CorrectionModel as JSON, readable and editable by hand. Size, nesting, version, shapes and numbers
 // are checked before anything is built from it. save -> load -> save is byte-identical. Files of version 1, which also
 // held kappa and the referee, are read too.

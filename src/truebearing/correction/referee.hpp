@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The referee: which of two estimates has lately foretold the measurements better, the corrected one or the reference?
 // Both are carried one and more steps ahead at constant velocity and compared with the measured positions. Positions and
 // velocities are judged apart, each with the other as it was published, so that neither can hide behind the other:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The learned rules as sentences that an operator can read: the terms in words, what the network says at the rule's
 // centre, how much the rule is used and what the teacher said there.
 #pragma once

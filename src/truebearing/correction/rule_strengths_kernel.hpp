@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The strengths of fuzzy rules, the innermost loops of a correction, in SIMD instructions where the processor has them: the
 // same bits with them and without.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What trackers of several targets at a line array cannot fall below, run by run, from the truth and how loud the
 // targets are:
 //   Cramer-Rao  of an interval by itself, powers unknown. It has no end as two targets meet.

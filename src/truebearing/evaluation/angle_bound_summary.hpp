@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The bounds of several targets' angles over the runs of a comparison.
 #pragma once
 

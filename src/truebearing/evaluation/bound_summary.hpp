@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The Cramer-Rao bound over the runs of a comparison: the root of the mean over runs of their variances.
 #pragma once
 

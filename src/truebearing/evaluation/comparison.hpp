@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A comparison: trackers on the same Monte Carlo runs of one scenario, scored against the truth.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Figures of what trackers notice (tracker/tracker.hpp), from the events of a tracker's runs. Events count by their own
 // times, which may lie before the steps that noticed them.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // GOSPA, the generalised optimal sub-pattern assignment metric, p = 2 and alpha = 2, between the true values x (n) of a
 // scalar quantity and those that tracks give (m):
 //

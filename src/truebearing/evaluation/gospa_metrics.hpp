@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The GOSPA (gospa.hpp) of targets that appear and vanish, over the scored steps of a tracker's runs. Key
 // of [scoring]; it does not go with `tracks`, which tells tracks by their numbers:
 //   gospa = { quantity = "angle_deg", cutoff = 5.0 }

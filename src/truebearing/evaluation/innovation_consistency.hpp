@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What can be said of a tracker without truth: whether its innovations are as large as it claims, and white.
 // (Bar-Shalom, Li and Kirubarajan 2001, sec. 5.4.2.)
 #pragma once

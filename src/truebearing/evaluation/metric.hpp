@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A figure that a problem has besides, an entry of `metrics` in the results; and what two trackers differ by, one of
 // `paired`.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // MetricFamily: figures that belong together, over the runs of one tracker. What it needs of a run beside its RunScore
 // it gathers step by step, run by run; a tally takes the runs in the order of their numbers, so that the order in which
 // they were computed cannot matter, and keeps no more of them than its figures need. A new one is a file of its own and a line in metric_registry.cpp.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The metric families by their keys in a study's table [scoring]. Each is in a file of its own, which says what its key
 // is; times_s = [280.0, ...], ascending, is of all that have figures at given times.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Monte Carlo runs over threads. A run is a pure function of its number; threads only share out the numbers.
 #pragma once
 

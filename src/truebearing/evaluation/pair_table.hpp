@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What pairs of trackers differ by, as a table.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How far a tracker strays at worst. Key of [scoring]: peak_error = true. With each quantity,
 //   <quantity>_peak_error  mean over runs of the largest error norm among a run's scored steps and targets; runs
 //                          without any are left out

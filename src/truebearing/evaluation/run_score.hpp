@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // RunScore: the errors of one tracker in one run, target by target and step by step, and what the metric families keep
 // of it. Everything that a comparison reports is made from these, so that the order in which runs were computed cannot
 // matter.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is kept of many runs for their statistics (statistics.hpp). Of as many as comparisons usually have it is all of
 // them, and figures are exact; of more it is what memory can hold whatever their number, and figures are as good as
 // can be told from it.

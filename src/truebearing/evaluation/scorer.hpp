@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scorer: a tracker's estimate against the truth, quantity by quantity. Where the components and quantities of its
 // state are found in the truth is settled once, by name.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Statistics over Monte Carlo runs that every figure of a comparison is made of: pooled RMSE, means, medians and their
 // standard errors. What cannot be said of so few values is NaN.
 #pragma once

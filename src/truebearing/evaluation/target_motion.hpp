@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A target in the plane as a captain asks for it: its range from own ship, its course, its speed. Errors of an estimate
 // in these, and what a covariance of the state [east, north, v_east, v_north] (n = 4) says of them.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The Cramer-Rao bound on a target's position, velocity, range, course and speed, run by run, from the truth and where
 // own ship was: bearings of a target at constant velocity, or one whose acceleration is white noise. Where frequencies
 // are measured with them, the unknowns are the state [east, north, v_east, v_north] and one frequency for each that the

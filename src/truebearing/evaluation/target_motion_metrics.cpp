@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "truebearing/evaluation/target_motion_metrics.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which record of a tracker is about which target of a recording.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The step of a run that stands for a given time. The periods of a family's runs differ: it is the last one until then.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The part of a comparison's table that has figures at given times.
 #pragma once
 

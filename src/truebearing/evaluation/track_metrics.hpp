@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Figures of several targets whose tracks are told by their numbers: swaps and losses of tracks, and squared errors of
 // the runs without any. Key of [scoring]; last_steps is optional:
 //   tracks = { quantity = "angle_deg", bad = 3.0, last_steps = 5, excursion = 6.0 }

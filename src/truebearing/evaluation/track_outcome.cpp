@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "truebearing/evaluation/track_outcome.hpp"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What became of the tracks of one run with several targets: whether each still follows its own target at the end, has
 // changed over to another (a swap), or has lost it; and whether any strayed on the way (an excursion).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The figures of several targets as a table: swaps, losses, squared errors of clean runs, GOSPA.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // TrackerSet: the trackers of one comparison. Plain and corrected ones share one ensemble, so that each filter runs
 // once however many corrections look at it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One measurement with the model of its step, whose type is not known when the filter is compiled, only the length m of
 // z: what filters behind trackers reach a study's choice through. z and R are plain data; h, H and the residual are
 // virtual, except of measured positions, for which the filter knows them.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Forms of the covariance recursion that carry P itself (n x n), as policies of KalmanFilter:
 //     predict  P = F P F' + Q
 //     update   S = H P H' + R,  K = P H' S^-1,  P = (I - K H) P (I - K H)' + K R K'   (Joseph; Bucy and Joseph 1968)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A motion model of a known type behind the run-time interface. Its structure stays known to the compiler here: the
 // zeros of its F and Q cost nothing (product.hpp), whatever filter uses it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The three small factorizations the filters stand on, for fixed sizes, without heap and branch-free: A = L D L' with
 // its solve, the square root of a positive semi-definite matrix, and orthogonal triangularization (Golub and Van Loan
 // 2013, sections 4.1 and 5.1). Sizes are so small that Eigen's general solvers spend most of their time on set-up.

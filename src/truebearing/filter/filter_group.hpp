@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Many filters of one kind that take the same measurements, as a bank of hypotheses does: what is virtual is called
 // once for all of them, and motions that several share are asked for F and Q once.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The filters that stand behind the seam of tracked_state.hpp, made by their kind and the length of a motion's state: 2
 // to 7 components. Each is compiled once (*_states.cpp); a filter of one's own joins by FilterState.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // FilterState puts a fixed-size filter (KalmanFilter and its like) behind the seam of tracked_state.hpp. It is compiled
 // for a filter of N states and measurements of M components, whatever the models.
 #pragma once

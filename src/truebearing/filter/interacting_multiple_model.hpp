@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The interacting multiple model estimator (Blom and Bar-Shalom 1988; Bar-Shalom, Li and Kirubarajan 2001, sec.
 // 11.6.6): r filters under one motion model each, mixed before every prediction by the chain that says how targets
 // change from one to another, weighted by the likelihood of their innovations.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The Kalman filter (Kalman 1960), and with a nonlinear motion or measurement model the first-order extended one: state
 // x (n), covariance P (n x n). A small value: no heap, no virtual call; Form says how P is carried and updated.
 //     predict  x = F x or f(x),  P = F P F' + Q

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The extended Kalman filter in log-polar coordinates, for bearings in the plane: y = [bearing, ln range, and their
 // rates] (measurement/log_polar.hpp), in which a bearing is linear, h(y) = y_0, so that an update cannot mistake what
 // bearings do not tell for something they do. x (4), P (4 x 4).

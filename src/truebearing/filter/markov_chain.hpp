@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A Markov chain between the modes of a multiple-model filter: Pi (r x r), Pi_ij the probability that mode i is
 // followed by mode j one period later.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The modified-gain extended Kalman filter (Song and Speyer 1985) for measurements that are linear once the measured
 // value is known: h(x) - h(x_pred) = g(z, x_pred) (x - x_pred) exactly where z = h(x). State x (n), covariance P (n x
 // n), g (m x n).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Products of small fixed-size matrices, written out coefficient by coefficient: nothing keeps a filter out of
 // registers, and a term with a factor of zero that the compiler can see is left out. So the structure of a model costs
 // nothing and stands nowhere but in its own F and H: F P of four states at constant velocity takes 8 multiplications,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the filters do with small fixed-size matrices besides products (product.hpp), as plain loops. Eigen's expressions
 // run no faster at these sizes, and each of them costs the compiler anew for every size of state and measurement:
 // together most of the time that a file of filters took.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The square-root covariance filter (SRCF) in array form, as a policy of KalmanFilter: carries the upper triangular U
 // (n x n), P = U U', which reaches twice as many digits down as P does. Theta is orthogonal, found by
 // triangularization:

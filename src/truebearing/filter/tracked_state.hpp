@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // TrackedState, the run-time seam between trackers and filters: the estimate of one target under one filter and one
 // motion, or under several. Trackers (tracker/) decide what to do with a measurement; what fills the seam does the
 // arithmetic. Sizes are known at run time and bounded; nothing allocates after construction.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The unscented Kalman filter: state x (n), covariance P (n x n), the same interface as KalmanFilter, no Jacobians.
 // Mean and covariance of f and h are those over 2 n + 1 points x, x +- c L_i, where P = L L' and c^2 = n + kappa:
 //     predict  x = sum w f,  P = sum w (f - x)(f - x)' + Q

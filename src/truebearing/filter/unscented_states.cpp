@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "truebearing/filter/filter_kinds.hpp"
 
 namespace truebearing {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What one measurement update leaves behind besides the new state.
 #pragma once
 

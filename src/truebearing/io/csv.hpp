@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // CSV with a header (RFC 4180), as programs write it: cells separated by comma, semicolon or tab, whichever the header
 // has most of, or by what a line `sep=;` in front of it names; decimal commas where the comma does not separate cells;
 // quoted cells; LF, CRLF or CR; an optional UTF-8 byte order mark; lines that begin with # are comments. Read row by

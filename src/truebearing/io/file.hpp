@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whole files: reading with a size limit, writing so that a crash leaves the old file or the new one, never a mixture.
 #pragma once
 

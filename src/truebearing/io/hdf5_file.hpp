@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // HDF5 files as far as the house needs them: named datasets of numbers, with numbers as their attributes. Written in
 // memory, so that a file appears whole (io/file.hpp) and has the same bytes whenever it holds the same numbers. Read
 // in a process of its own (io/limited_child.hpp), since libhdf5 does not survive every damaged file; links and storage

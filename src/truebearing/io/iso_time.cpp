@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "truebearing/io/iso_time.hpp"
 
 #include <chrono>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // ISO 8601 times as seconds: "2026-11-28T19:59:50.25Z", "2026-11-28 20:59+01:00", "20261128T195950Z".
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // JSON files with limits: size and nesting are checked before anything of that size or depth is built, and a key that
 // stands twice in one object is refused. What is written ends with a newline; NaN and infinities become null.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // LimitedChild: work on data that nobody vouches for, by code that is not ours, in a process of its own. Whatever
 // becomes of it there - a crash, memory or time without end - this process has bytes or an error. What the work gives
 // back goes through a socket.

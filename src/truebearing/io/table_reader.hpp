@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // TableReader: a TOML table read key by key. It remembers which keys were asked for; finish() turns every other key
 // into an error that suggests the nearest valid one. Errors name file, line and key.
 #pragma once

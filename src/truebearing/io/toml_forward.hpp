@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // toml++'s types by name: its header costs every reader a second of compiling, and most look at tables through a
 // TableReader only. Who looks inside one includes <toml++/toml.h>.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The bearing of a target in the plane, x = [east, north, v_east, v_north] in m and m/s (n = 4), from a sensor that
 // moves: z = [bearing_rad] (m = 1), clockwise from North, R = [sigma^2].
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bearing and Doppler-shifted frequency of a target in the plane, x = [east, north, v_east, v_north, f0] in m, m/s and
 // Hz (n = 5), from a sensor that moves: z = [bearing_rad, frequency_hz] (m = 2), the bearing clockwise from North,
 //     f = f0 (1 - v_r / c),  v_r = (v - v_site) . u,  u = [sin bearing, cos bearing]

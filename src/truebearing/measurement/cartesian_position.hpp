@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Positions measured directly with correlated errors: z = [positions (Dim)] of a state [positions (Dim), velocities
 // (Dim)] in m and m/s. Linear, H = [I, 0] (m x n, m = Dim, n = 2 Dim), R = R_m2 (m x m), as a conversion from polar
 // coordinates leaves it.

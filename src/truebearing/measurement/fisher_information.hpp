@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fisher information of measurements about the state x0 (n) of a target whose motion is known but for x0:
 //     J(x0) = sum_i (H_i Phi_i)' R_i^-1 (H_i Phi_i),  H_i at the true state, Phi_i = dx(t_i) / dx0.
 // Its inverse is the Cramer-Rao bound of unbiased estimators; with a prior's information added, the posterior bound.

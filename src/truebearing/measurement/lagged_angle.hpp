@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An angle as it was lag_s ago, of a state [angle, rate]: h(x) = angle - lag_s rate, H = [1, -lag_s], R = sigma^2.
 // What is made of an interval's snapshots belongs to a time before the interval's end.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Log-polar coordinates of a target in the plane relative to a sensor: y = [bearing, ln range, d bearing/dt, d ln
 // range/dt] in rad, ln m and 1/s, from x = [east, north, v_east, v_north] in m and m/s. What a run of bearings alone
 // tells and what it does not are different components here (Aidala and Hammel 1983, with ln range in place of

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A measurement model on a state of N components whose first ones are the model's own: accelerations or a turn rate
 // behind positions and velocities. h(x) = model.h(head of x), H = [H of the model, 0] (m x N); R and residual are the
 // model's.

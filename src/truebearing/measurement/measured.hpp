@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is measured: the kind, and the components of z with their units as logs name them. A sensor says what it takes,
 // a scenario what it gives, and a study compares the two when it is read (study/measured_check.hpp).
 #pragma once

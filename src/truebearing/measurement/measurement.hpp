@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One measurement as it comes from a sensor or a log: a small vector with its time, its own standard deviations where
 // the sensor gives them, and where the sensor was.
 #pragma once

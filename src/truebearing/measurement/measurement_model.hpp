@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a measurement model is. A model is a value made for the step: it carries that measurement's sensor position and
 // standard deviations. x is the state (n), z the measurement (m), H the Jacobian of h (m x n), R the noise covariance
 // (m x m).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Positions measured directly: z = [positions (Dim)] of a state [positions (Dim), velocities (Dim)]. Linear,
 // H = [I, 0] (m x n, m = Dim, n = 2 Dim), R = diag(sigma^2).
 #pragma once

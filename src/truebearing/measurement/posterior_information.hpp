@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The Fisher information about the state x_k (n) of a target that moves linearly, x' = F x + w, w ~ N(0, Q), carried
 // along with it:
 //     J' = (F J^-1 F' + Q)^-1 = (I + M Q)^-1 M,  M = F^-T J F^-1

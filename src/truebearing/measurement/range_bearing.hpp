@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Range and bearing from a site to a state [east, north, v_east, v_north] in m and m/s: z = [range_m, bearing_rad] (m =
 // 2, n = 4), bearings clockwise from North, R = diag(sigma^2). And the conversion of such a z to an unbiased position:
 // Mo, Song, Zhou, Sun and Bar-Shalom 1998, and for a track Bordonaro, Willett and Bar-Shalom 2014.

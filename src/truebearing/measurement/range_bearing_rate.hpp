@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Range, bearing and range rate from a site that may move to a state [east, north, v_east, v_north] in m and m/s:
 // z = [range_m, bearing_rad, range_rate_mps] (m = 3, n = 4), bearings clockwise from North,
 //     range rate = u . (v - v_site),  u = [sin bearing, cos bearing],     R = diag(sigma^2)

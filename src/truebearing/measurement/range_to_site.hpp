@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ground range from a site to a state [east, north, v_east, v_north] in m and m/s: z = |position - site| (m = 1, n =
 // 4). H = [u', 0] with u the unit vector from the site to the target.
 #pragma once

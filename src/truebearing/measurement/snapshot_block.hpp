@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a line array heard over one interval, as a measurement carries it: complex snapshots of all its sensors, as
 // views of memory that the Recording owns.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A motion model whose type is not known when the filter is compiled, only the length of its state: what filters
 // behind trackers reach a study's choice through. One virtual call carries a whole estimate across.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Constant acceleration in Dim directions: x = [positions (Dim), velocities (Dim), accelerations (Dim)] in m, m/s and
 // m/s^2. F = [1, dt, dt^2/2; 0, 1, dt; 0, 0, 1] in each direction (n x n, n = 3 Dim), Q from the noise policy.
 // Bar-Shalom, Li and Kirubarajan 2001, section 6.2.3 (continuous) and 6.3.3 (discrete).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Constant jerk in Dim directions: x = [positions (Dim), velocities (Dim), accelerations (Dim), jerks (Dim)] in m, m/s,
 // m/s^2 and m/s^3, the jerk driven by continuous white noise of spectral density q in m^2/s^7 (n = 4 Dim). In each
 // direction F_ij = dt^(j-i) / (j-i)! for j >= i and, with a = 3 - i and b = 3 - j,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Constant velocity in Dim directions: x = [positions (Dim), velocities (Dim)] in m and m/s; in the plane
 // [east, north, v_east, v_north]. F = [I, dt I; 0, I] (n x n, n = 2 Dim), Q from the noise policy.
 #pragma once

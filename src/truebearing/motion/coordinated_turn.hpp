@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Coordinated turn at a known rate: x = [east, north, v_east, v_north] in m and m/s, the velocity turning by
 // turn_rate_radps, positive to starboard (clockwise, bearings growing). F (4 x 4) is exact. Bar-Shalom, Li and
 // Kirubarajan 2001, section 11.7.1, there positive to port and singular at rate zero.

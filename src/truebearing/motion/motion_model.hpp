@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a motion model is. x is the state (n), dt the time to cross in seconds, F the transition or, of a nonlinear
 // model, the Jacobian of f in x (n x n), Q the process noise covariance gathered over dt (n x n).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Process noises of kinematic models, as policies: Q (2 Dim x 2 Dim) gathered over dt for a state [positions,
 // velocities], independent in each direction. Bar-Shalom, Li and Kirubarajan 2001, section 6.2 (continuous) and 6.3
 // (discrete).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Singer's model of a manoeuvring target in Dim directions: x = [positions, velocities, accelerations] (n = 3 Dim) in
 // m, m/s and m/s^2, the acceleration a first-order Markov process of standard deviation sigma_a_mps2 and correlation
 // exp(-dt / time_constant_s). F and Q (n x n) are exact. Singer 1970.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Coordinated turn at a rate that is estimated with the rest: x = [east, north, v_east, v_north, turn_rate] in m, m/s
 // and rad/s, positive to starboard. Nonlinear: f, its Jacobian F (5 x 5) and Q = [Q of the noise policy, 0; 0, q dt].
 // Bar-Shalom, Li and Kirubarajan 2001, section 11.7.2, in smooth functions of the angle turned.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A motion in the plane with the frequency that the target radiates: [east, north, v_east, v_north, f0] and, where the
 // motion has more, the rest behind it: [..., f0, a_east, a_north] as Kim and Song order their seven (equation 8). f0
 // walks at random, independent of the motion: its variance grows by q_f dt.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Recorded positions on the globe as recordings in the plane: CSV with a time (time_column.hpp), `latitude_deg` and
 // `longitude_deg` (WGS-84), and optionally `vessel`, `flight`, `track`, `mmsi`, `icao24` or `callsign`, a text that tells
 // targets apart whose rows are interleaved. Other columns are passed over. What a transponder says of its own course and speed is no truth as a rule; it is taken

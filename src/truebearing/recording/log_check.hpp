@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a recorded file holds and whether it can be read: what each column is taken for, how often rows come, and what is
 // odd about them. For `truebearing check LOG.csv`.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What each column of a recorded file is taken for. Names say the quantity and its unit (log_units.hpp); a column that
 // is none of those known is left out, unless its name is so near to one that the file lacks that it was probably meant.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The units that names of columns may end in, and what a number of each is multiplied by. Inside, lengths are metres,
 // speeds m/s, angles radians, frequencies Hz.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A recording: what a sensor measured over time and, where it is known, the truth beside it. The simulator makes
 // recordings and measurement logs are read into them, so that trackers cannot tell the two apart.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The measurement log: CSV with a time (time_column.hpp), measured columns with their units in the name (`position_m`,
 // `range_km`, `bearing_deg`; log_units.hpp), and optionally their standard deviations (`position_sigma_m`), own-ship
 // columns (`sensor_east_m`, `sensor_north_m`, and `sensor_east_mps`, `sensor_north_mps`), a guess of what is tracked

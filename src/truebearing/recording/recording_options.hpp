@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a recorded file is to be read, where its own header does not say it all.
 #pragma once
 

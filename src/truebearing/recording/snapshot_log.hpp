@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The snapshot log: what a line array recorded, as HDF5. The dataset `snapshots` (interval, snapshot, sensor, 2) holds
 // the real and imaginary parts; its attributes are
 //   interval_s                         how long an interval is; its snapshots come evenly and end at its time

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The times of a recorded file: a number in the unit that the column's name ends in (`time_s`, `time_ms`,
 // `timestamp_ns`), or ISO 8601 text under these or under a name without a unit (`time`, `timestamp`, `datetime`).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The true velocity along a recorded track, for which only positions are known: the slope of the least-squares line
 // over a sample and its two neighbours on either side, at their actual times.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A family of encounters may accept some of its draws only: those whose target never comes too close, and those whose
 // range or position the measurements determine in time (its Cramer-Rao bound, as if the target kept its first
 // velocity).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the angle of a target goes with time: a start, a constant rate, and terms that bend it.
 //     angle(t) = start + rate t + sum of   amplitude sin(2 pi min(t, until) / period)
 //                                          height tanh((t - centre) / width)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A scenario of bearings whose target sails a recorded track instead of a simulated path: the truth is the track's own,
 // at its own times, moved so that it begins at the scenario's range and bearing from own ship. Own ship, sensor, source
 // and guess are the scenario's; its period, its target's course and speed, its phases and what it accepts are not

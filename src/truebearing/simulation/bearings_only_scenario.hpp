@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bearings of a target from an own ship that manoeuvres: target-motion analysis. Vessels sail at constant speed with
 // turns (vessel.hpp); the target begins at a range and bearing from own ship, which begins at the origin. In passive
 // sonar the target is a source (source.hpp) besides, whose frequency is heard too, and the truth ends in the frequency

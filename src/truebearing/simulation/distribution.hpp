@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A number in a scenario: a value, or a distribution that each run draws from. In TOML: 200.0 or one of
 // { uniform = [low, high] }, { normal = [mean, standard deviation] }, { log_uniform = [low, high] },
 // { choice = [a, b, ...] }.

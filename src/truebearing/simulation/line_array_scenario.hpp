@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Several targets heard by a line array (kind = "line_array"): complex Gaussian signals in noise, a block of snapshots
 // every period. Targets stand still inside an interval, at the angle that its end has, or move through it (`moving`).
 //   period_s, first_interval, intervals, moving

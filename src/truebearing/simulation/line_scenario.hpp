@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A target on a line at constant velocity, with white process noise, whose position a sensor measures once per period:
 //   x_k = F x_{k-1} + w_k, w_k ~ N(0, scale diag(process_noise_variance)),  z_k = position_k + v_k,  k = 1..steps.
 // Over gaps of another length (simulation/look_schedule.hpp) the variance of w grows with the time.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // When a sensor looks, and when it sees: the table [looks] of a scenario. Without it a sensor looks once per period and
 // misses nothing. Each run draws its own period, gaps, misses and outages, from a stream of their own: what a target does
 // does not depend on when it is looked at.

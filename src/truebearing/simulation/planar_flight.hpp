@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A flight in the East-North plane: straight legs and manoeuvres in alternation. A manoeuvre is a turn at constant
 // speed or an acceleration along the track; its rate rises and falls linearly at both ends (roll-in). Positions follow
 // exact arcs over sub-steps of at most .1 s.

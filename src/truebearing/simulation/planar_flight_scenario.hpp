@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A flight in the plane, seen from a site: as ground range from the site (output "range": line space, range and its
 // rate), as East and North from the site (output "plane"), or as range and bearing from it (output "range_bearing").
 // The site is placed by one of two rules: [site] closest_m puts it off a random point of the track, square to the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A scripted flight in the East-North plane: legs at constant velocity, constant turn rate or constant acceleration,
 // one after the other, the same in every run; the noise differs. For published scenarios. Sampled at 0, period, ... to
 // the end of the last leg.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A sensor at the origin of the East-North plane, with Gaussian noise and, where asked for, outliers and false plots. What it can measure
 // is one table, planar_outputs(). The table [sensor] of scenarios in the plane.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Recorded tracks as a scenario: the truth is the recording's own, and every run measures it afresh with Gaussian
 // noise. What the recording did not measure stays missing. Of several tracks, run k measures number k mod count. The
 // snapshots of a line array cannot be measured afresh, nor can a log that does not say how good its measurements are:

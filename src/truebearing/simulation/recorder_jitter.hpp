@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What recorders of real flights do to positions: only some samples (knots) are received, each with an error of its
 // time stamp, which moves it along the velocity; the others are linear interpolations between knots.
 #pragma once

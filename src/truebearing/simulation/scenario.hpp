@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A scenario: what happens. simulate() makes the truth and the measurements of one run, a pure function of (scenario,
 // role, seed, run). A scenario with distributions in it is a family: each run draws from them.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sensor of an own ship that listens: it measures the bearing of a target and, of a source, the frequency that is
 // heard with its Doppler shift (bearing_frequency.hpp). Noise is Gaussian, with dropouts and outliers where asked for;
 // while own ship turns, measurements may be missing. The table [sensor] of scenarios of bearings.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a target radiates: a tone of one frequency that may jump to another.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a target is doing, told by its first turn: the phases by which a comparison tells errors apart.
 #pragma once
 

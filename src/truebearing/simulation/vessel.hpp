@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A vessel at constant speed that changes course: straight legs and circular turns between them. Own ships and targets
 // alike. Courses clockwise from North.
 #pragma once

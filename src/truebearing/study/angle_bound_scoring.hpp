@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The key of a study's table [scoring] that asks for the bounds of several targets:
 //   angle_bound = { q_deg2ps3 = 0.03, rate_sigma_degps = 2.0, apart_deg = 10.0 }
 //                                         what the angles of targets at a line array cannot be told better than

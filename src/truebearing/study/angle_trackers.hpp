@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makers of trackers of several targets' angles at a line array.
 //
 // kind = "subspace_angles" (tracker/subspace_angle_tracker.hpp):

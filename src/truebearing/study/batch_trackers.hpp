@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makers of batch target-motion analysis from tables of a study.
 #pragma once
 

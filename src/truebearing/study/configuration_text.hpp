@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A TOML value on one line, keys sorted, numbers as doubles: how a model file remembers the trackers it was trained
 // for.
 #pragma once

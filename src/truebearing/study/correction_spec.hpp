@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a study says of a correction: which trackers it looks at, with which features, and how it is trained. Plain
 // data.
 #pragma once

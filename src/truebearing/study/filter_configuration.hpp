@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the makers of filter trackers share: starts, options, the chain between modes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makers of filter trackers: from a table of a study to a FilterTracker or a FilterBank. Their keys are in the README.
 #pragma once
 

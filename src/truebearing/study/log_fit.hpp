@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a recorded log fits a study: where the study's times fall in it, and why a tracker could not begin on it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A study's trackers take what its scenario measures, and so does a log that it is given: compared by name as it is
 // read. Who does not say what it takes or gives takes or gives anything.
 #pragma once

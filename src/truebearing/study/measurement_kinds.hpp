@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The one table from names of measurements in study files to sensors (tracker/any_sensor.hpp).
 #pragma once
 

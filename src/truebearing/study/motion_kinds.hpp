@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The one table from names of motions in study files to motion models, on the line, in the plane, and with the
 // frequency of a source behind the velocities.
 #pragma once

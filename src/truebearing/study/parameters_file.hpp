@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The parameters file: baseline parameters that `truebearing tune` fitted, by tracker, as readable TOML that studies
 // name.
 //     [tuned]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "truebearing/study/passive_sonar_configuration.hpp"
 
 #include <toml++/toml.h>

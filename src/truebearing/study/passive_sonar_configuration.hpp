@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The composed tracker of a passive sonar from its table in a study:
 //     hand_over_s, hand_over_percent, false_alarm_probability, manoeuvre_mps, steady_probability, show_batch
 //     measurement, space             of both parts, where they do not say otherwise

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A belief about a target's range and velocity from its table in a study: what trackers start from, batch estimators
 // weigh in, and posterior bounds assume.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A recorded track that a study is compared on: a measurement log with truth, which every run measures afresh with the
 // log's own sigma, or replays where it carries none; a line array's snapshot log with truth, which every run replays; or
 // positions on the globe (recording/geographic_track.hpp), which every run measures

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A study: one comparison, from its TOML file. A scenario (fixed, or a family to draw from), the trackers, their
 // corrections and how those are trained, and what is scored. The factory of the house: it makes what the file names.
 #pragma once

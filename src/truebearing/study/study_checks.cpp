@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What of a study cannot be right is refused when it is read, and a model that is not its own before it runs.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A study's file, over the file of the study that it is `like`. What that one names by paths is where it was, also from
 // another folder.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // StudyScoring: how a study is scored, which differences and bounds it wants.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The trackers that a study names, made: with their tuned numbers, and corrected by their models.
 #include <algorithm>
 #include <fmt/format.h>

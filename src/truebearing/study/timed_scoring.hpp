@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The keys of a study's table [scoring] that compare its figures at given times with what can be reached:
 //   global_minimum = "ml_225"             the batch tracker whose costs the others' are compared with
 //   bound = { kind = "cramer_rao", prior = { kind = "range", ... }, q_m2ps3, bearing_sigma_deg }

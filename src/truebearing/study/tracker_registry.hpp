@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The one table from names in study files to makers of trackers. It is open: a program registers its own before it
 // reads a study.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // TrackerSpec: what a study says of one of its trackers, with what it takes over from the one that it is `like`.
 #pragma once
 

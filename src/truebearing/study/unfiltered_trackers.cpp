@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "truebearing/study/unfiltered_trackers.hpp"
 
 #include <string>

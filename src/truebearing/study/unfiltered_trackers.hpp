@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makers of trackers without a filter: the measurement as it is, and what ran elsewhere.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The arctangent of two arguments without a branch, so that a loop over bearings becomes SIMD instructions. Within
 // 3e-16 rad of std::atan2 for finite arguments that are not both zero, NaN where both are.
 #pragma once

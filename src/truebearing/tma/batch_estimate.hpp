@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a batch estimator says of a target at constant velocity: its state at the time of the last bearing, and how it
 // came to it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sums over a window of bearings, or of frequencies, that normal equations are made of: the inner loops of
 // target-motion analysis, in SIMD instructions where the processor has them. For bearing_window.cpp, modified_polar.cpp
 // and doppler_term.cpp.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The bearings that a batch estimate is made from, and the normal equations of the target's state over them: for a
 // state in Cartesian coordinates (Cho 2015, equation 2), and for one in modified polar coordinates
 // (modified_polar.hpp). Arrays by component, so that a pass over the window runs in SIMD instructions.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bearings-only target-motion analysis as Cho 2015 has it: Gauss-Newton, Levenberg and Levenberg-Marquardt in Cartesian
 // coordinates from 15 x 15 starts, at most ten steps, every step taken. Baselines: target_motion_batch.hpp does better.
 //

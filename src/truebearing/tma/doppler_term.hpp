@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The share that frequencies have in the normal equations of a state in modified polar coordinates
 // (modified_polar.hpp). In its frame, with r = 1/rho, own ship's departure e from the velocity of its line along and
 // across the direction beta, and s^2 = u^2 + v^2,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The frequencies that a batch estimate is made from, beside its bearings: tones of a source at f0, shifted by
 // Doppler's effect on the way to a sensor that moves,
 //

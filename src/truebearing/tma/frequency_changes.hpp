@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sources that change their tone: which of a window's frequencies belong to one level of f0, found by an edge detector
 // (Kim and Song: |z_k - z_k-1| / (sqrt(2) sigma) against a threshold gamma) and, for jumps that are too small for it,
 // by a score scan of the residuals after a batch. For every interval [a, b) of a level, w the weights, g = 1 - v_r / c:

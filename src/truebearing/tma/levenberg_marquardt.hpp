@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Levenberg-Marquardt for weighted least squares in N parameters, with rejection of steps that do not descend,
 // Marquardt's scaling and Nielsen's damping (Nielsen 1999; Madsen, Nielsen and Tingleff 2004, algorithm 3.16). Fixed
 // size, no heap.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Modified polar coordinates in the middle of a window of bearings (Aidala and Hammel 1983): what bearings determine
 // well is kept apart from the range. Own ship's motion is its straight-line fit o(t) = a + b tau, tau = t - origin, and
 // the rest d(t); relative to the line the target is at

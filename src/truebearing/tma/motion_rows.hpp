@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Residuals of bearings and frequencies about a target that keeps its course and speed, or changes its velocity once,
 // and what they are made of to first order: rows of normalised residuals e = (z - h) / sigma with their derivatives by
 //

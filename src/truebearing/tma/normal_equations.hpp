@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Weighted least squares around a point x (n): residuals r = z - h(x), Jacobian J = dh/dx, weights W. What every step
 // of Gauss-Newton and Levenberg-Marquardt is made of, and the Fisher information at the end.
 #pragma once

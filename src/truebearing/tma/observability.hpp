@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the bearings of a window say and what they do not: Nardone and Aidala 1981 for when the range can be known at
 // all. Judged by the information in free units u = (d beta, T d beta', T d(r'/r), d ln r), T the length of the window:
 // a direction of u is determined where its standard deviation is under one half, of a radian or of the range.

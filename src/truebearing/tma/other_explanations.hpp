@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What else bearings may be that no one course and speed explains: those of two contacts in one log, or all of them
 // turned round (of the wrong end of a line array, or from the target to own ship).
 #pragma once

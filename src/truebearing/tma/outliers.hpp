@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measurements that do not belong to their neighbours, whatever the estimate is worth that their residuals are about:
 // each normalised residual is held against the median of the eight around it, so that neither a slow misfit (of a
 // target that manoeuvred, say) nor a few outliers among the eight hide it or make one.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is believed of a target when its first bearing comes in: the range by guess, its velocity by a spread. As a
 // Gaussian state [east, north, v_east, v_north] in m and m/s, for filters to start from, for maximum a posteriori
 // estimates and for posterior bounds. Arulampalam, Ristic, Gordon and Mansell 2004, sec. 5 for the Cartesian form.

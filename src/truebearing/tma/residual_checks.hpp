@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the residuals of a batch estimate say of its assumptions: are they as large as their standard deviations, are
 // they white, are there outliers among the bearings, did the target change its velocity inside the window, are all
 // bearings off by a constant? However the estimate was made (maximum likelihood, with a prior, with Huber's loss, by a

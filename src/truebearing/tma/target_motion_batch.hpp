@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The batch estimate of a target at constant velocity from bearings, and from Doppler-shifted frequencies where there
 // are any: maximum likelihood, or maximum a posteriori where something is believed beforehand, by Levenberg-Marquardt
 // in modified polar coordinates from a few starts. Before the range is observable the likelihood has no maximum at a

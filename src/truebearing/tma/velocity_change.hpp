@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Did a target change its velocity inside a window, and when? The model of one course and speed is set against that of
 // two, velocity v until t_c and v + dv from then on, at a number of times t_c. In two steps:
 //

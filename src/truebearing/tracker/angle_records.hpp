@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What trackers of several targets' angles do with their records alike.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // AnySensor: how a tracker reads measurements of one kind, chosen by a study at run time. From each it makes z, R and
 // the measurement model of the step; and it says what a track may begin with. A sensor is written as a plain struct:
 //     Model model(const Measurement&) const     the measurement model of the step

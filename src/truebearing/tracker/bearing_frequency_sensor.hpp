@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A sensor of bearings and Doppler-shifted frequencies, (any_sensor.hpp): where the measurement says that
 // its sensor was. z = [bearing_rad, frequency_hz], either missing, or the bearing alone. The measurement's own standard
 // deviations hold where it carries them, else the sensor's; either is multiplied by sigma_factor.

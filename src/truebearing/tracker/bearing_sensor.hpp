@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A sensor of bearings (any_sensor.hpp): where the measurement says that its sensor was, at the origin
 // and at rest where it does not say. A frequency behind the bearing is left alone. The measurement's own standard
 // deviation holds where it carries one, else the sensor's; either is multiplied by sigma_factor.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "truebearing/tracker/bearings_batch_tracker.hpp"
 
 #include <algorithm>

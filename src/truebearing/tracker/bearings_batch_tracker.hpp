@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Batch target-motion analysis as a Tracker: bearings, and frequencies where they are configured, are collected in a
 // growing or sliding window, and the estimate is made afresh from all of them. Between solutions, and while nothing is
 // measured, the last one is carried on at constant velocity (`coasted`). Where the geometry does not determine the

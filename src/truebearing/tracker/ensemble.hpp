@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ensemble: several trackers stepped on the same measurements, their records aligned by track. Everything that compares
 // or corrects trackers looks at one ensemble, so that no tracker runs twice.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A bank of filters under one prior each: hypotheses on what is unknown but constant (the mean of the prior, Q, R),
 // weighted by the likelihood of the innovations (Magill 1965; Bar-Shalom, Li and Kirubarajan 2001, sec. 11.6.2). With
 // the family's own distribution for the hypotheses its mean approximates E[x | z]: no estimator has a smaller mean

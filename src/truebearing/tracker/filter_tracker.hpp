@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // FilterTracker makes a Tracker of a tracked state (filter/tracked_state.hpp) and a sensor. What the filter leaves open
 // is decided here: missing, repeated, late and gated measurements, starts, long gaps, failed arithmetic, publishing.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A FilterTracker of a filter, a motion and a sensor of known types, for whoever writes a program rather than a study:
 //     FilterTrackerOf<KalmanFilter<4>, ConstantVelocity<2, DiscreteWhiteNoise>, PositionSensor<2>>
 //         tracker(plane_space(), motion, sensor, TwoPointStart{});

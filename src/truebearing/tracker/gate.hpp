@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The validation gate: a measurement whose NIS passes the threshold is not used. Every rejection in a row widens the
 // gate; what only the wider one lets through is believed with a covariance as wide, and the gate narrows again step by
 // step: a filter that took such a measurement with the covariance that had ruled it out would hardly move.

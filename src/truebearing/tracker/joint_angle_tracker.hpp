@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The joint filter of all targets' angles (array/joint_angle_filter.hpp) with its hypotheses as a Tracker: one record
 // per target. It begins with the first usable interval: angles from its covariance, rates unknown. Where targets may
 // appear and vanish, a signal that the others do not explain begins a track, at once or when it is heard again, and a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What an operator of a passive sonar needs on one log of bearings and frequencies, as one Tracker (Kim and Song): a
 // batch estimate is made until it knows the range well enough; a filter takes it over, carried to that time, and goes
 // on from there, so that no measurement counts twice. Along the way it reports as events when the range became known,

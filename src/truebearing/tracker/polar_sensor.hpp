@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sensors of range and bearing, z = [range_m, bearing_rad], of a target in the plane [east, north, v_east, v_north]
 // (any_sensor.hpp). The measurement's own standard deviations hold where it carries them, else the sensor's; either is
 // multiplied by sigma_factor.

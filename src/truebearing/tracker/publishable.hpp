@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a tracker may publish as an estimate: anything else is `failed`, whatever a hostile log made of its arithmetic.
 #pragma once
 

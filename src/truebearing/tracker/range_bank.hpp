@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A bank of filters of bearings, with frequencies or without, that begins with the first of them: one filter for each
 // of the hypotheses on range and velocity (range-parametrised filter: Peach 1995).
 #pragma once

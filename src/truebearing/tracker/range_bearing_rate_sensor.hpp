@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A Doppler radar's sensor: range, bearing and range rate (any_sensor.hpp), where the measurement says that it was, else
 // at site_m and at rest. The measurement's own standard deviations hold where it carries them, else the sensor's; either
 // is multiplied by sigma_factor.

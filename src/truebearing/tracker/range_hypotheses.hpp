@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hypotheses of a bank on a target whose first bearing has come in: its range cut into intervals in geometric
 // progression (Peach 1995), its velocity into sectors of courses. Each has the mean and covariance of what the prior
 // says given that cell, and the cell's probability for weight, so that together they have the prior's own.

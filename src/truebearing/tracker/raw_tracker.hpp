@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The raw measurement as a tracker: x = z, P = diag(sigma^2). What a user has without any filter; the row to beat.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A tracker that ran elsewhere, replayed from its step log, so that it can be corrected and compared without being
 // touched. It replays one log, matched by time; or, on the measurements of step logs, what each of them carries.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // StreamGuard for snapshots: two blocks of one time are the same where their sums are.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a filter begins: from a prior that belongs to a time, from its first measurement, or from its first two.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The step log: what trackers did, as CSV. It is what `truebearing track -o` writes, and how a tracker that runs
 // elsewhere (an existing system, MATLAB, Stone Soup) joins the house. Columns: `time_s`, `track`, `x_<component>`,
 // `P_<i>_<j>` (upper triangle, from 1), and where they exist `tracker`, `status`, `z_<i>`, `nu_<i>`, `S_<i>_<j>`,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A step log as recordings: what a tracker elsewhere measured and made of it, so that a correction can be trained on
 // its logs and applied to new ones.
 #pragma once

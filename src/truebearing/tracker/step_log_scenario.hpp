@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Step logs as a scenario (kind = "step_logs"): run k of a role replays track number k mod count of that role's logs,
 // so that a tracker that runs elsewhere can be trained on and compared from its logs alone. Keys:
 //   training, evaluation   arrays of files, relative to the scenario; * in a file's name stands for any text

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // StepRecord, the hub of the house: what one tracker did with one measurement for one target. A core that every tracker
 // fills, and optional blocks that say whether they are there. Absent is absent, never faked. No heap.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // StreamGuard: what every tracker asks of a measurement before it looks at the value. Decides, from the times and
 // values alone, whether a measurement can be used, and counts the ones that cannot.
 #pragma once

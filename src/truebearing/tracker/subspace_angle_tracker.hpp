@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Several targets' angles from the signal subspace, without data association (Ryu, Lee and Lee 2001, section III.2):
 // one Kalman filter per target on [angle, rate], whose innovation is the angle by which its predicted steering vector
 // has to turn to lie in the subspace. The first two usable intervals begin the filters (step 1), by a spectrum's angles

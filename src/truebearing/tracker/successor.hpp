@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A tracker that goes on from another's estimate: a filter that a batch estimate begins.
 #pragma once
 

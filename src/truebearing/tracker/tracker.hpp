@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tracker: the run-time interface of every estimator in the house, one virtual call per measurement.
 #pragma once
 

@@ -49,7 +49,8 @@ ConsequentEquations::ConsequentEquations(Eigen::Index rules, Eigen::Index output
       strengths_sum_(Eigen::VectorXd::Zero(rules)),
       targets_squared_(Eigen::VectorXd::Zero(outputs)) {}
 
-void ConsequentEquations::add(const Eigen::Ref<const Eigen::MatrixXd>& phi, const Eigen::Ref<const Eigen::MatrixXd>& T) {
+void ConsequentEquations::add(const Eigen::Ref<const Eigen::MatrixXd>& phi,
+                              const Eigen::Ref<const Eigen::MatrixXd>& T) {
   rows_ += static_cast<double>(phi.rows());
   strengths_squared_.selfadjointView<Eigen::Lower>().rankUpdate(phi.transpose());
   strengths_by_targets_.noalias() += phi.transpose() * T;

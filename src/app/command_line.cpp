@@ -34,7 +34,8 @@ int fail(const std::string& what) {
 // Help, the version, or what is wrong with the usage.
 int finish(CLI::App& app, const CLI::ParseError& error) {
   const bool wrong = app.exit(error) != 0;
-  if (!std::cout.flush() || std::fflush(stdout) != 0 || std::ferror(stdout) != 0) return fail("standard output: cannot be written");
+  if (!std::cout.flush() || std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+    return fail("standard output: cannot be written");
   return wrong ? 2 : 0;
 }
 

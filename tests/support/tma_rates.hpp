@@ -3,9 +3,12 @@
 // outliers that were found, turns that were found and when.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -28,7 +31,9 @@ struct TmaCase {
 struct TmaRates {
   int logs = 0, manoeuvres = 0, jumps = 0, unfit = 0, coloured = 0, biased = 0;
   int outliers = 0, outliers_found = 0, outliers_invented = 0, logs_with_all_found = 0;
-  std::vector<double> change_s;  ///< of the manoeuvres
+  std::vector<double> change_s;             ///< of the manoeuvres
+  std::set<std::uint64_t> with_manoeuvres;  ///< numbers of the logs that had one, in whichever window
+  std::set<std::uint64_t> with_jumps;
 
   TmaRates& operator+=(const TmaRates& more) {
     logs += more.logs;
@@ -42,6 +47,8 @@ struct TmaRates {
     outliers_invented += more.outliers_invented;
     logs_with_all_found += more.logs_with_all_found;
     change_s.insert(change_s.end(), more.change_s.begin(), more.change_s.end());
+    with_manoeuvres.insert(more.with_manoeuvres.begin(), more.with_manoeuvres.end());
+    with_jumps.insert(more.with_jumps.begin(), more.with_jumps.end());
     return *this;
   }
 };
@@ -49,7 +56,7 @@ struct TmaRates {
 /// One log as TMA sees it, with its outliers.
 class TmaLog {
  public:
-  TmaLog(const Recording& recording, const TmaCase& what, std::uint64_t run) {
+  TmaLog(const Recording& recording, const TmaCase& what, std::uint64_t run) : run_(run) {
     RandomStream stream({what.outlier_share > 0.0 ? 99u : 98u, Role::evaluation, run}, StreamId::test);
     for (const Measurement& m : recording.measurements) {
       if (m.time_s > what.end_s) break;
@@ -79,7 +86,10 @@ class TmaLog {
     const ResidualChecks checks = check_residuals(bearings_, estimate, heard);
     ++rates.logs;
     rates.manoeuvres += checks.manoeuvred;
-    rates.jumps += heard && !changes.changes().empty();
+    const bool jumped = heard && !changes.changes().empty();
+    rates.jumps += jumped;
+    if (checks.manoeuvred) rates.with_manoeuvres.insert(run_);
+    if (jumped) rates.with_jumps.insert(run_);
     rates.unfit += !checks.rest.fits();
     rates.coloured += !checks.white;
     rates.biased += checks.bias.detected;
@@ -94,6 +104,7 @@ class TmaLog {
   }
 
  private:
+  std::uint64_t run_;
   BearingWindow bearings_;
   DopplerWindow frequencies_;
   std::vector<std::size_t> outliers_;

@@ -127,8 +127,8 @@ TEST(ResidualChecks, FrequenciesShowAManoeuvreThatBearingsDoNot) {
   EXPECT_LE(seen, 5);
 }
 
-// Twice the rate that the thresholds promise (.001) or less, whatever the estimate was made by and where the range is
-// open: among thirty logs, each looked at by three methods, more than one with a false alarm comes once in 500 times.
+// Whatever the estimate was made by and where the range is open: of ten logs, each looked at in three windows by three
+// methods, at most one has a false alarm. At the thresholds' .001 a window two of them come once in some 2,500 times.
 TEST(ResidualChecks, HoldForEveryMethodWithOutliersAndOpenRanges) {
   constexpr int kLogs = 10;
   for (const char* name : {"cho_s1", "bearings_only_m", "passive_sonar_a"}) {
@@ -138,9 +138,8 @@ TEST(ResidualChecks, HoldForEveryMethodWithOutliersAndOpenRanges) {
       for (const char* method : {"ml", "map", "huber"})
         for (const double end_s : {300.0, 390.0, 1500.0})
           sum += testing::rates_of(*scenario, {.method = method, .end_s = end_s, .outlier_share = share}, kLogs, 3);
-      EXPECT_LE(sum.manoeuvres, 3) << name << share;
-      // Of one log, at three ends and by three methods: its outliers leave frequencies a little less to agree on.
-      EXPECT_LE(sum.jumps, 9) << name << share;
+      EXPECT_LE(sum.with_manoeuvres.size(), 1u) << name << share;
+      EXPECT_LE(sum.with_jumps.size(), 1u) << name << share;
       // Of six bearings nothing can tell which is wrong.
       if (std::string(name) != "bearings_only_m") {
         EXPECT_GE(sum.outliers_found, 0.95 * sum.outliers) << name;

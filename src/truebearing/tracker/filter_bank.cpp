@@ -10,7 +10,6 @@
 #include "truebearing/tracker/publishable.hpp"
 
 namespace truebearing {
-namespace {}  // namespace
 
 FilterBank::FilterBank(const StateSpace& space, std::unique_ptr<FilterGroup> group,
                        std::vector<std::unique_ptr<AnySensor>> sensors, std::vector<Hypothesis> hypotheses,

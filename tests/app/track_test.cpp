@@ -88,8 +88,9 @@ TEST(Track, AnswersARowOfAStreamAsItComes) {
   for (const char* arguments : {"track line.toml - -o - < log > steps", "track line.toml log -o steps"}) {
     const TemporaryFolder outputs;
     const pid_t child = testing::start(folder, arguments, outputs.path());
-    std::FILE* to = std::fopen(log.c_str(), "w");
-    const int from = ::open(steps.c_str(), O_RDONLY);
+    // Neither waits for the other end, which the program opens when it likes, or never where it gives up.
+    std::FILE* to = std::fopen(log.c_str(), "r+");
+    const int from = ::open(steps.c_str(), O_RDONLY | O_NONBLOCK);
     const auto answer = [&] {  // what comes within ten seconds
       struct pollfd waiting {
         from, POLLIN, 0

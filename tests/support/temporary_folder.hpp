@@ -2,22 +2,23 @@
 // A folder of a test's own, gone when the test is over.
 #pragma once
 
-#include <atomic>
+#include <cerrno>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
-#include <unistd.h>
+#include <system_error>
 
 namespace truebearing::testing {
 
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    static std::atomic<int> count{0};
-    path_ = std::filesystem::temp_directory_path() /
-            ("truebearing-test-" + std::to_string(::getpid()) + "-" + std::to_string(count++));
-    std::filesystem::create_directories(path_);
+    std::string name = (std::filesystem::temp_directory_path() / "truebearing-test-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr)
+      throw std::filesystem::filesystem_error("no folder for a test", name, {errno, std::generic_category()});
+    path_ = name;
   }
   ~TemporaryFolder() {
     std::error_code ignored;

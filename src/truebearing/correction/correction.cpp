@@ -117,6 +117,7 @@ std::span<const StepRecord> Correction::correct(const Ensemble& ensemble) {
       continue;
     }
     Track& track = track_of(references[i].track);
+    handed_over_ = 0.0;
     if (fallback_ >= 0)
       step.reference = &trusted(*step.base, references[i], ensemble.record(fallback_, references[i].track), track);
     inputs_.extract(ensemble, *step.base, track.extractor, features_);
@@ -136,11 +137,12 @@ const StepRecord& Correction::trusted(const StepRecord& base, const StepRecord& 
   const BoundedVector x = fallback->x + G.cwiseProduct(d);
   const bool valid = Blend(G[0], G[G.size() - 1]).covariance(reference.P, fallback->P, d, trusted_.P);
   if (!x.allFinite() || !valid) return reference;
+  handed_over_ = 1.0 - G.mean();
   trusted_.x = x;
   trusted_.track = reference.track;
   trusted_.time_s = reference.time_s;
   trusted_.status = reference.status;
-  if (base.status == StepStatus::ok) track.handover.predict(reference.x, *fallback, x);
+  if (base.status == StepStatus::ok) track.handover.predict(base, reference.x, *fallback, x);
   return trusted_;
 }
 
@@ -150,6 +152,7 @@ void Correction::correct_record(const CorrectionInputs::Records& step, Track& tr
   begin_record(base, reference, corrected);
   corrected.correction->base_x = base.x;
   corrected.correction->base_P = base.P;
+  corrected.correction->handed_over = handed_over_;
   if (!features_.allFinite() || !step.agree()) return;  // g = 0
 
   model_->network.strengths(features_, phi_);
@@ -171,7 +174,7 @@ void Correction::correct_record(const CorrectionInputs::Records& step, Track& tr
   const BoundedVector weighted =
       apart ? limit_kappa(distance, G.cwiseProduct(d), bounds_.kappa).d : BoundedVector(g * w.position * d);
   const BoundedVector x = within_kappa(reference.x, distance, weighted, bounds_.kappa);
-  if (bounds_.referee && base.status == StepStatus::ok) track.referee.predict(reference.x + d, reference, x);
+  if (bounds_.referee && base.status == StepStatus::ok) track.referee.predict(base, reference.x + d, reference, x);
 
   BoundedMatrix P;
   const bool valid = Blend(G[0], G[G.size() - 1]).covariance(P_c, reference.P, d, P);

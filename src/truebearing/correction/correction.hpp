@@ -56,6 +56,7 @@ class Correction {
   std::vector<StepRecord> records_;
   // Work space of one step.
   StepRecord trusted_;
+  double handed_over_ = 0.0;
   CorrectionInputs::Features features_;
   FuzzyNetwork::Strengths phi_;
 };

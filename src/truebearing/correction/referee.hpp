@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The referee: which of two estimates has lately foretold the measurements better, the corrected one or the reference?
-// Both are carried one and more steps ahead at constant velocity and compared with the measured positions. Positions and
-// velocities are judged apart, each with the other as it was published, so that neither can hide behind the other:
+// Positions and velocities are judged apart, so that neither can hide behind the other. A position is carried one step
+// ahead with the velocity that was published, and compared with what is measured there; a velocity is compared, some
+// steps later, with the slope at its own time of the parabola through the measurements around it, which has no lag:
 //
-//     position, one step ahead:          |z - x - dt v_published|^2 / s^2
-//     velocity, one to kAhead steps:     |z - x_published - dt v|^2 / s^2,    s^2 what the reference claims
+//     position, one step ahead:             |z_k - x - dt v_published|^2 / s^2
+//     velocity, of a steps ago, a = 1 2 4:  |slope(z_{k-2a}, z_{k-a}, z_k) - v|^2 / s^2,    s^2 what the reference claims
 //
 // These are averaged over the recent past, and the corrected estimate loses the weight of a part where its average is
 // the larger one. It needs no truth and sees what the box gate cannot: a network that was taught on the wrong family.
@@ -29,7 +30,7 @@ struct RefereeOptions {
 
 class Referee {
  public:
-  static constexpr std::size_t kAhead = 4;
+  static constexpr std::array<std::size_t, 3> kHalfWidths{1, 2, 4};  ///< of the parabolas, in steps
 
   /// g in [0, 1], of the first and of the second half of the state.
   struct Weights {
@@ -44,39 +45,18 @@ class Referee {
     const BoundedVector& z = base.innovation->z;
     const Eigen::Index m = base.x.size() / 2;
     if (z.size() != m) return;
-    const std::size_t count = std::min(foretold_steps_, kAhead);
-    for (std::size_t age = 0; age < count; ++age) {
-      const Foretold& foretold = foretold_[(foretold_steps_ - 1 - age) % kAhead];
-      const double dt_s = base.time_s - foretold.time_s;
-      if (foretold.published.size() != 2 * m || !(dt_s > 0.0)) continue;
-      const double claimed = base.innovation->S.trace() + dt_s * dt_s * foretold.velocity_variance;
-      const auto squared_error = [&](const BoundedVector& position, const BoundedVector& velocity) {
-        double squared = 0.0;
-        for (Eigen::Index i = 0; i < m; ++i) {
-          const double error = z[i] - position[i] - dt_s * velocity[m + i];
-          squared += error * error;
-        }
-        return squared / claimed;
-      };
-      const auto take = [&](Averages& averages, double corrected, double reference, double share) {
-        averages.corrected += share * options.alpha * (corrected - averages.corrected);
-        averages.reference += share * options.alpha * (reference - averages.reference);
-        averages.started = true;
-      };
-      if (age == 0)
-        take(position_, squared_error(foretold.corrected, foretold.published),
-             squared_error(foretold.reference, foretold.published), 1.0);
-      take(velocity_, squared_error(foretold.published, foretold.corrected),
-           squared_error(foretold.published, foretold.reference), 1.0 / static_cast<double>(count));
-    }
+    judge_position(base, z, options);
+    judge_velocity(base, z, options);
   }
 
   /// What the next measurements will be held against, of a step that used one: the corrected estimate before any
   /// weight, the reference's record, and what was published.
-  void predict(const BoundedVector& corrected, const StepRecord& reference, const BoundedVector& published) {
+  void predict(const StepRecord& base, const BoundedVector& corrected, const StepRecord& reference,
+               const BoundedVector& published) {
     const Eigen::Index m = published.size() / 2;
-    foretold_[foretold_steps_++ % kAhead] = {reference.time_s, corrected, reference.x, published,
-                                             reference.P.diagonal().tail(m).sum()};
+    if (!base.innovation || base.innovation->z.size() != m) return;
+    estimates_[steps_++ % kKept] = {base.time_s, base.innovation->z, corrected,
+                                    reference.x, published,          reference.P.diagonal().tail(m).sum()};
   }
 
   Weights weights(const RefereeOptions& options) const {
@@ -90,13 +70,63 @@ class Referee {
     double corrected = 1.0;
     double reference = 1.0;
   };
-  struct Foretold {
+  struct Estimates {
     double time_s = 0.0;
+    BoundedVector z;  // measured then
     BoundedVector corrected;
     BoundedVector reference;
     BoundedVector published;
     double velocity_variance = 0.0;
   };
+
+  static constexpr std::size_t kKept = 2 * kHalfWidths.back();
+
+  // Of `age` steps that used a measurement ago, from 1; nullptr where there was none.
+  const Estimates* ago(std::size_t age) const {
+    return age <= std::min(steps_, kKept) ? &estimates_[(steps_ - age) % kKept] : nullptr;
+  }
+
+  static void take(Averages& averages, double corrected, double reference, double weight) {
+    averages.corrected += weight * (corrected - averages.corrected);
+    averages.reference += weight * (reference - averages.reference);
+    averages.started = true;
+  }
+
+  void judge_position(const StepRecord& base, const BoundedVector& z, const RefereeOptions& options) {
+    const Estimates* last = ago(1);
+    const Eigen::Index m = z.size();
+    if (!last || last->published.size() != 2 * m || !(base.time_s > last->time_s)) return;
+    const double dt_s = base.time_s - last->time_s;
+    const double claimed = base.innovation->S.trace() + dt_s * dt_s * last->velocity_variance;
+    const auto squared_error = [&](const BoundedVector& x) {
+      return (z - x.head(m) - dt_s * last->published.tail(m)).squaredNorm() / claimed;
+    };
+    take(position_, squared_error(last->corrected), squared_error(last->reference), options.alpha);
+  }
+
+  void judge_velocity(const StepRecord& base, const BoundedVector& z, const RefereeOptions& options) {
+    const Eigen::Index m = z.size();
+    std::array<double, kHalfWidths.size()> told{}, corrected{}, reference{};
+    double all_told = 0.0;
+    for (std::size_t i = 0; i < kHalfWidths.size(); ++i) {
+      const Estimates* then = ago(kHalfWidths[i]);
+      const Estimates* before = ago(2 * kHalfWidths[i]);
+      if (!before || before->z.size() != m || then->z.size() != m) break;
+      const double h1 = then->time_s - before->time_s, h2 = base.time_s - then->time_s;
+      if (!(h1 > 0.0) || !(h2 > 0.0)) break;
+      // The derivative of Lagrange's parabola at its middle point.
+      const double w1 = -h2 / (h1 * (h1 + h2)), w2 = h1 / (h2 * (h1 + h2)), w0 = -w1 - w2;
+      const BoundedVector slope = w1 * before->z + w0 * then->z + w2 * z;
+      const double claimed = then->velocity_variance + (w1 * w1 + w0 * w0 + w2 * w2) * base.innovation->S.trace();
+      told[i] = then->velocity_variance / claimed;
+      corrected[i] = (slope - then->corrected.tail(m)).squaredNorm() / claimed;
+      reference[i] = (slope - then->reference.tail(m)).squaredNorm() / claimed;
+      all_told += told[i];
+    }
+    if (!(all_told > 0.0)) return;
+    for (std::size_t i = 0; i < kHalfWidths.size() && told[i] > 0.0; ++i)
+      take(velocity_, corrected[i], reference[i], options.alpha * told[i] / all_told);
+  }
 
   static double weight(const Averages& averages, const RefereeOptions& options) {
     if (!averages.started) return 1.0;
@@ -105,8 +135,8 @@ class Referee {
     return std::isfinite(weight) ? weight : 0.0;
   }
 
-  std::array<Foretold, kAhead> foretold_;  // step k in place k % kAhead
-  std::size_t foretold_steps_ = 0;
+  std::array<Estimates, kKept> estimates_;  // step k in place k % kKept
+  std::size_t steps_ = 0;
   Averages position_;
   Averages velocity_;
 };

@@ -31,7 +31,8 @@ struct Innovation {
 struct CorrectionOutcome {
   double gate = 0.0;             ///< g in [0, 1]; the mean over the state where positions and velocities have their own
   bool limited = false;          ///< limit_kappa shortened the correction, or turned a non-finite one into zero
-  double distance_sigmas = 0.0;  ///< Mahalanobis distance of the published estimate from the reference, reference P
+  double distance_sigmas = 0.0;  ///< Mahalanobis distance of the published estimate from what was trusted, its P
+  double handed_over = 0.0;      ///< the fallback's share of what was trusted, in [0, 1]: 0 the reference alone
   BoundedVector base_x;          ///< (n); empty where the base gave no estimate, and the reference stands
   BoundedMatrix base_P;          ///< (n x n); likewise
 };

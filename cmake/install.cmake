@@ -29,6 +29,7 @@ install(TARGETS truebearing_program COMPONENT program)
 set(shared ${CMAKE_INSTALL_DATAROOTDIR})
 install(DIRECTORY data models DESTINATION ${shared}/truebearing COMPONENT program)
 install(FILES README.md CONTRIBUTING.md LICENSE DESTINATION ${shared}/doc/truebearing COMPONENT program)
+install(DIRECTORY docs DESTINATION ${shared}/doc/truebearing COMPONENT program)
 install(FILES LICENSE DESTINATION ${shared}/doc/truebearing RENAME copyright COMPONENT program)
 install(FILES packaging/truebearing.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
 install(FILES packaging/truebearing.bash DESTINATION ${shared}/bash-completion/completions RENAME truebearing

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every command that the README prints runs, with few runs; and so does its study.
+// Every command that the README and docs/ print runs, with few runs; so do their studies; and every link leads somewhere.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -19,20 +22,38 @@ using testing::Outcome;
 using testing::run;
 using testing::TemporaryFolder;
 
-std::string readme() {
-  std::ostringstream text;
-  text << std::ifstream(std::string(TRUEBEARING_SOURCE_DIR) + "/README.md").rdbuf();
-  return text.str();
+namespace fs = std::filesystem;
+
+struct Document {
+  fs::path path;
+  std::string text;
+};
+
+std::vector<Document> documents() {
+  const fs::path source(TRUEBEARING_SOURCE_DIR);
+  std::vector<fs::path> paths{source / "README.md", source / "CONTRIBUTING.md"};
+  for (const auto& entry : fs::directory_iterator(source / "docs"))
+    if (entry.path().extension() == ".md") paths.push_back(entry.path());
+  std::sort(paths.begin(), paths.end());
+  std::vector<Document> all;
+  for (const fs::path& path : paths) {
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    all.push_back({path, text.str()});
+  }
+  return all;
 }
 
-// `truebearing ARGUMENTS` in the order in which they stand there, names of subcommands alone apart.
-std::vector<std::string> commands() {
-  const std::string text = readme();
-  const std::regex command("`(?:build/release/)?truebearing ([a-z]+ [^`\n]+)`");
+std::vector<std::string> all_matches(const std::string& text, const std::regex& pattern) {
   std::vector<std::string> found;
-  for (std::sregex_iterator match(text.begin(), text.end(), command), end; match != end; ++match)
+  for (std::sregex_iterator match(text.begin(), text.end(), pattern), end; match != end; ++match)
     found.push_back((*match)[1]);
   return found;
+}
+
+// `truebearing ARGUMENTS` in the order in which they stand in a document, names of subcommands alone apart.
+std::vector<std::string> commands(const Document& document) {
+  return all_matches(document.text, std::regex("`(?:build/release/)?truebearing ([a-z]+ [^`\n]+)`"));
 }
 
 // With two runs where it compares.
@@ -64,26 +85,44 @@ TEST(Readme, EveryCommandRuns) {
   const std::filesystem::path source(TRUEBEARING_SOURCE_DIR);
   for (const char* shared : {"data", "models"})
     std::filesystem::create_directory_symlink(source / shared, folder.path() / shared);
-  const std::vector<std::string> all = commands();
-  EXPECT_GT(all.size(), 20u);
-  for (const std::string& arguments : all) {
-    write_data(folder, arguments);
-    const Outcome outcome = run(folder, shortened(arguments));
-    EXPECT_EQ(outcome.status, 0) << arguments << "\n" << outcome.err;
-  }
+  std::set<std::string> seen;
+  for (const Document& document : documents())
+    for (const std::string& arguments : commands(document)) {
+      if (!seen.insert(shortened(arguments)).second) continue;
+      write_data(folder, arguments);
+      const Outcome outcome = run(folder, shortened(arguments));
+      EXPECT_EQ(outcome.status, 0) << document.path << ": " << arguments << "\n" << outcome.err;
+    }
+  EXPECT_GT(seen.size(), 20u);
 }
 
-TEST(Readme, ItsStudyCanBeTunedAndCompared) {
+TEST(Readme, ItsStudiesCanBeTunedTaughtAndCompared) {
   const TemporaryFolder folder;
-  const std::string text = readme(), begin = "```toml\n";
-  const std::size_t first = text.find(begin + "name = \"mine\"");
-  ASSERT_NE(first, std::string::npos);
-  const std::size_t from = first + begin.size();
-  folder.write("mine.toml", text.substr(from, text.find("```", from) - from));
-  for (const char* arguments : {"check mine.toml", "tune mine.toml --quiet", "compare mine.toml --runs 5 --quiet"}) {
-    const Outcome outcome = run(folder, arguments);
-    EXPECT_EQ(outcome.status, 0) << arguments << "\n" << outcome.err;
-  }
+  int studies = 0;
+  for (const Document& document : documents())
+    for (const std::string& study :
+         all_matches(document.text, std::regex("```toml\n(name = \"[a-z]+\"\nruns[\\s\\S]*?)```"))) {
+      ++studies;
+      const std::string name = all_matches(study, std::regex("^name = \"([a-z]+)\"")).front() + ".toml";
+      folder.write(name, study);
+      std::vector<std::string> steps{"check", "tune", "compare"};
+      if (study.find("corrected") != std::string::npos) steps.insert(steps.begin() + 2, "train");
+      for (const std::string& step : steps) {
+        const Outcome outcome = run(folder, step + " " + name + (step == "compare" ? " --runs 5 --quiet" : ""));
+        EXPECT_EQ(outcome.status, 0) << document.path << ": " << step << "\n" << outcome.err;
+      }
+    }
+  EXPECT_GE(studies, 2);
+}
+
+TEST(Readme, EveryLinkLeadsSomewhere) {
+  int links = 0;
+  for (const Document& document : documents())
+    for (const std::string& link : all_matches(document.text, std::regex("\\]\\(([^)#:]+)(?:#[^)]*)?\\)"))) {
+      ++links;
+      EXPECT_TRUE(fs::exists(document.path.parent_path() / link)) << document.path << ": " << link;
+    }
+  EXPECT_GT(links, 20);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Figures of batch estimators (tma/) at the times of a scoring rule: how they came to their estimates. Their names and
-// definitions are those of the README.
+// definitions are those of docs/metrics.md.
 #pragma once
 
 #include <memory>

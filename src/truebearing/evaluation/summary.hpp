@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The figures that a comparison reports, from the scores of its runs. Definitions as they are printed in the README:
+// The figures that a comparison reports, from the scores of its runs. Definitions, as docs/metrics.md has them:
 // `rmse` over runs and scored steps, `rmse_se` by the jackknife over runs, `paired` over runs.
 #pragma once
 

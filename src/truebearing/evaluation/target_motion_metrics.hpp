@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Errors in a target's range, course and speed, as its own ship sees it (target_motion.hpp), at the times of a scoring
-// rule. Their names and definitions are those of the README. Key of [scoring]: target_motion = true, beside times_s.
+// rule. Their names and definitions are those of docs/metrics.md. Key of [scoring]: target_motion = true, beside times_s.
 #pragma once
 
 #include <memory>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Figures at the times of a scoring rule, from the scores of a tracker's runs. Their names and definitions are those of
-// the README. A run counts at a time that it reaches with a known truth; of these, runs without a finite estimate are
+// docs/metrics.md. A run counts at a time that it reaches with a known truth; of these, runs without a finite estimate are
 // left out of every figure but `missing_share`, where they are counted, and `loss_rate`, where they are lost.
 #pragma once
 

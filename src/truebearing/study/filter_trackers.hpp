@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makers of filter trackers: from a table of a study to a FilterTracker or a FilterBank. Their keys are in the README.
+// Makers of filter trackers: from a table of a study to a FilterTracker or a FilterBank. Their keys are in docs/studies.md.
 #pragma once
 
 #include <memory>

@@ -99,6 +99,7 @@ Subcommand Subcommands::add(const std::string& name, const std::string& descript
 
 template Argument Subcommand::argument(const std::string&, std::string&, const std::string&) const;
 template Argument Subcommand::argument(const std::string&, std::vector<std::string>&, const std::string&) const;
+template Argument Subcommand::argument(const std::string&, std::vector<double>&, const std::string&) const;
 template Argument Subcommand::argument(const std::string&, int&, const std::string&) const;
 template Argument Subcommand::argument(const std::string&, double&, const std::string&) const;
 template Argument Subcommand::argument(const std::string&, std::uint64_t&, const std::string&) const;

@@ -54,6 +54,7 @@ int command_line(int argc, const char* const* argv) {
       ->trigger_on_parse();
   app.require_subcommand(1);
   const Subcommands all{app};
+  add_new(all);
   add_simulate(all);
   add_tune(all);
   add_train(all);

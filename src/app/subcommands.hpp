@@ -6,6 +6,7 @@
 
 namespace truebearing {
 
+void add_new(const Subcommands& all);
 void add_simulate(const Subcommands& all);
 void add_tune(const Subcommands& all);
 void add_train(const Subcommands& all);

@@ -96,7 +96,7 @@ TEST(Readme, EveryCommandRuns) {
   EXPECT_GT(seen.size(), 20u);
 }
 
-TEST(Readme, ItsStudiesCanBeTunedTaughtAndCompared) {
+TEST(Readme, ItsStudiesCanBeTunedAndCompared) {
   const TemporaryFolder folder;
   int studies = 0;
   for (const Document& document : documents())
@@ -105,14 +105,12 @@ TEST(Readme, ItsStudiesCanBeTunedTaughtAndCompared) {
       ++studies;
       const std::string name = all_matches(study, std::regex("^name = \"([a-z]+)\"")).front() + ".toml";
       folder.write(name, study);
-      std::vector<std::string> steps{"check", "tune", "compare"};
-      if (study.find("corrected") != std::string::npos) steps.insert(steps.begin() + 2, "train");
-      for (const std::string& step : steps) {
+      for (const std::string step : {"check", "tune", "compare"}) {
         const Outcome outcome = run(folder, step + " " + name + (step == "compare" ? " --runs 5 --quiet" : ""));
         EXPECT_EQ(outcome.status, 0) << document.path << ": " << step << "\n" << outcome.err;
       }
     }
-  EXPECT_GE(studies, 2);
+  EXPECT_GE(studies, 1);
 }
 
 TEST(Readme, EveryLinkLeadsSomewhere) {

@@ -30,12 +30,13 @@ TEST(Page, IsWellFormedAndNothingInItComesFromElsewhere) {
   const std::string page = report_page({read(results_json())});
   const Markup markup = read_markup(page);
   EXPECT_EQ(markup.error, "");
-  EXPECT_EQ(markup.elements.count("script"), 0u);
+  EXPECT_EQ(markup.elements.at("script"), 1);
   EXPECT_EQ(markup.elements.count("link") + markup.elements.count("img"), 0u);
   EXPECT_EQ(markup.attributes.count("style"), 0u) << "which the policy would not allow";
   EXPECT_EQ(count_of(page, "http"), count_of(page, "http://www.w3.org/2000/svg") + 1) << "and http-equiv";
   EXPECT_THAT(page, HasSubstr("default-src 'none'; style-src 'sha256-" +
                               sha256_base64(between(page, "<style>", "</style>")) + "'"));
+  EXPECT_THAT(page, HasSubstr("script-src 'sha256-" + sha256_base64(between(page, "<script>", "</script>")) + "'"));
   const std::set<std::string> ids(markup.ids.begin(), markup.ids.end());
   EXPECT_EQ(ids.size(), markup.ids.size()) << "each id stands once";
   for (const std::string& label : markup.labels) {
@@ -71,11 +72,14 @@ TEST(Page, HasEveryPlotWithItsMarks) {
   EXPECT_EQ(count_of(run, "<ellipse "), 4);
   EXPECT_EQ(count_of(between(run, "class=\"sight measured\" d=\"", "\""), "M"), 3) << "one bearing is missing";
   EXPECT_THAT(run, HasSubstr("class=\"line truth\""));
+  EXPECT_EQ(between(run, "data-times=\"", "\""), "1 3 4") << "the times of the bearings that are there";
+  EXPECT_EQ(count_of(run, "data-times=\""), 4 + 4) << "of each ellipse; of bearings, own ship, truth and track";
 }
 
 TEST(Page, HasNoEmptyPlotWhereResultsHaveLess) {
   const std::string page = report_page({read(results_json(false))});
   EXPECT_EQ(count_of(page, "<figure>"), 1);
+  EXPECT_EQ(count_of(page, "script"), 0) << "with nothing to play";
   ResultJson json = results_json(false);
   for (auto& [name, tracker] : json["trackers"].items()) tracker["series"]["rmse"]["position_m"] = {nullptr, nullptr};
   EXPECT_EQ(count_of(report_page({read(json)}), "<figure>"), 0);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The report: one page that opens from disk. Nothing in it comes from elsewhere or runs; it prints as it stands.
+// The report: one page that opens from disk. Nothing in it comes from elsewhere; it is complete without its script, and
+// prints as it stands.
 #pragma once
 
 #include <string>

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "truebearing/report/markup.hpp"
+#include "truebearing/report/player.hpp"
 #include "truebearing/report/sha256.hpp"
 #include "truebearing/report/style.hpp"
 
@@ -20,14 +21,19 @@ std::string figure_of(const Plot& plot) {
 }  // namespace
 
 std::string html_page(const std::string& title, const std::string& body) {
-  const std::string& style = page_style();
-  return fmt::format(
+  const std::string &style = page_style(), &script = player_script();
+  const bool plays = body.find(" data-times=\"") != std::string::npos;
+  std::string page = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
-      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'sha256-{}'; base-uri "
-      "'none'; form-action 'none'\"/>\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'sha256-{}'; {}base-uri "
+      "'none'; form-action 'none'\"/>\n",
+      sha256_base64(style), plays ? fmt::format("script-src 'sha256-{}'; ", sha256_base64(script)) : "");
+  page += fmt::format(
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<title>{}</title>\n"
-      "<style>{}</style>\n</head>\n<body>\n<main>\n{}</main>\n</body>\n</html>\n",
-      sha256_base64(style), escaped(title), style, body);
+      "<style>{}</style>\n</head>\n<body>\n<main>\n{}</main>\n",
+      escaped(title), style, body);
+  if (plays) page += fmt::format("<script>{}</script>\n", script);
+  return page + "</body>\n</html>\n";
 }
 
 std::string section(const std::string& title, const std::vector<Plot>& plots) {

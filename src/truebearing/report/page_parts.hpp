@@ -9,7 +9,8 @@
 
 namespace truebearing {
 
-/// A whole page around `body`, which is markup. Its policy allows its own style and nothing else.
+/// A whole page around `body`, which is markup. Its policy allows its own style, the script that plays what has
+/// times (player.hpp), and nothing else.
 std::string html_page(const std::string& title, const std::string& body);
 
 /// Plots under a heading, each with its sentence and its numbers; empty where there are none.

@@ -16,7 +16,9 @@ namespace {
 constexpr std::size_t kMostEllipses = 12, kMostSights = 30;
 
 PlotSeries drawn(const std::string& name, const Look& look, Shape shape, const ResultLine& line) {
-  return {name, look, shape, line.x.empty() ? line.time_s : line.x, line.y};
+  PlotSeries series{name, look, shape, line.x.empty() ? line.time_s : line.x, line.y};
+  series.time_s = line.time_s;
+  return series;
 }
 
 bool stands_still(const ResultLine& line) {
@@ -35,6 +37,7 @@ void add_own_ship(const ResultPicture& picture, Plot& plot) {
     few.x.push_back(sights.x[i]);
     few.y.push_back(sights.y[i]);
     few.y2.push_back(picture.bearing_deg[i]);
+    few.time_s.push_back(sights.time_s[i]);
   }
   plot.series.push_back(std::move(few));
   const bool still = stands_still(picture.own_ship);
@@ -42,6 +45,7 @@ void add_own_ship(const ResultPicture& picture, Plot& plot) {
   if (!still) return;
   plot.series.back().x.resize(1);
   plot.series.back().y.resize(1);
+  plot.series.back().time_s.clear();
 }
 
 void add_uncertainty(const ResultTrack& track, const Look& look, Plot& plot) {
@@ -63,6 +67,7 @@ void add_uncertainty(const ResultTrack& track, const Look& look, Plot& plot) {
     ellipses.xx.push_back(track.xx[i]);
     ellipses.xy.push_back(track.xy[i]);
     ellipses.yy.push_back(track.yy[i]);
+    ellipses.time_s.push_back(line.time_s[i]);
   }
   plot.series.push_back(std::move(ellipses));
 }

@@ -30,6 +30,7 @@ struct PlotSeries {
   std::vector<double> x, y;
   std::vector<double> y2 = {};
   std::vector<double> xx = {}, xy = {}, yy = {};
+  std::vector<double> time_s = {};  ///< of each mark, where the plot can be played
 };
 
 struct Plot {

@@ -57,11 +57,14 @@ details { margin-top: 6px; } summary { cursor: pointer; color: var(--soft); font
 details .wide { max-height: 320px; overflow: auto; } details table { font-size: 0.8rem; }
 summary:focus-visible { outline: 2px solid var(--s0); outline-offset: 2px; }
 .up { color: var(--s1); font-weight: 600; } .down { color: var(--s2); font-weight: 600; }
+.player { display: flex; gap: 10px; align-items: center; } .player input { flex: 1; min-width: 0; accent-color: var(--s0); }
+.player output { color: var(--soft); font-size: 0.9rem; min-width: 4em; text-align: right; }
+.player button { font: inherit; font-size: 0.9rem; color: var(--ink); background: var(--card); border: 1px solid var(--soft); border-radius: 6px; padding: 2px 12px; cursor: pointer; }
 footer { margin-top: 3em; color: var(--soft); font-size: 0.85rem; }
 @media (max-width: 520px) { body { font-size: 15px; } figure { padding: 8px 4px; border-radius: 0; } main { padding: 12px 8px 32px; }
   svg.plot { font-size: 14px; } svg.plot .tick { font-size: 14px; } }
 @media print { body { font-size: 10pt; } main { max-width: none; padding: 0; } figure, table { break-inside: avoid; }
-  .plots { grid-template-columns: 1fr 1fr; gap: 8px; } figure { border: none; padding: 4px; } details { display: none; } }
+  .plots { grid-template-columns: 1fr 1fr; gap: 8px; } figure { border: none; padding: 4px; } details, .player { display: none; } }
 )";
   return style;
 }

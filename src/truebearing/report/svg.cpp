@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "truebearing/core/angle.hpp"
+#include "truebearing/core/constants.hpp"
 #include "truebearing/report/plot_frame.hpp"
 #include "truebearing/report/markup.hpp"
 #include "truebearing/report/style.hpp"
@@ -15,12 +16,29 @@ namespace {
 
 struct Pixel {
   double x, y;
+  double time_s = kNaN;  // where the plot can be played
+};
+
+double time_of(const PlotSeries& series, std::size_t i) {
+  return i < series.time_s.size() ? series.time_s[i] : kNaN;
+}
+
+// An attribute with the times of the marks, by which a page plays them (player.hpp).
+class MarkTimes {
+ public:
+  void add(double time_s) {
+    if (std::isfinite(time_s)) times_ += fmt::format("{}{:.12g}", times_.empty() ? "" : " ", time_s);
+  }
+  std::string attribute() const { return times_.empty() ? "" : fmt::format(" data-times=\"{}\"", times_); }
+
+ private:
+  std::string times_;
 };
 
 std::vector<std::vector<Pixel>> unbroken(const PlotSeries& series, const PlotFrame& frame) {
   std::vector<std::vector<Pixel>> pieces(1);
   for (std::size_t i = 0; i < std::min(series.x.size(), series.y.size()); ++i) {
-    const Pixel pixel{frame.x(series.x[i]), frame.y(series.y[i])};
+    const Pixel pixel{frame.x(series.x[i]), frame.y(series.y[i]), time_of(series, i)};
     if (std::isfinite(pixel.x) && std::isfinite(pixel.y))
       pieces.back().push_back(pixel);
     else if (!pieces.back().empty())
@@ -56,20 +74,29 @@ std::string path_of(const std::vector<Pixel>& line) {
 
 std::string draw_line(const PlotSeries& series, const PlotFrame& frame) {
   std::string path;
+  MarkTimes times;
   for (const std::vector<Pixel>& piece : unbroken(series, frame)) {
-    path += path_of(thinned(piece));
+    const std::vector<Pixel> drawn_pixels = thinned(piece);
+    path += path_of(drawn_pixels);
+    for (const Pixel& pixel : drawn_pixels) times.add(pixel.time_s);
     if (piece.size() == 1) path += "h0";  // a dot, by its round ends
   }
-  return path.empty() ? "" : fmt::format("<path class=\"line {}\" d=\"{}\"/>\n", series.look.name, path);
+  return path.empty()
+             ? ""
+             : fmt::format("<path class=\"line {}\" d=\"{}\"{}/>\n", series.look.name, path, times.attribute());
 }
 
 std::string draw_dots(const PlotSeries& series, const PlotFrame& frame) {
   std::string path;
+  MarkTimes times;
   for (std::size_t i = 0; i < std::min(series.x.size(), series.y.size()); ++i) {
     const double x = frame.x(series.x[i]), y = frame.y(series.y[i]);
-    if (std::isfinite(x) && std::isfinite(y)) path += fmt::format("M{:.1f} {:.1f}h0", x, y);
+    if (!std::isfinite(x) || !std::isfinite(y)) continue;
+    path += fmt::format("M{:.1f} {:.1f}h0", x, y);
+    times.add(time_of(series, i));
   }
-  return path.empty() ? "" : fmt::format("<path class=\"dots {}\" d=\"{}\"/>\n", series.look.name, path);
+  if (path.empty()) return {};
+  return fmt::format("<path class=\"dots {}\" d=\"{}\"{}/>\n", series.look.name, path, times.attribute());
 }
 
 // What a logarithmic axis has no place for is below the frame.
@@ -115,23 +142,28 @@ std::string draw_ellipses(const PlotSeries& series, const PlotFrame& frame) {
     const double turn = degrees(0.5 * std::atan2(2.0 * xy, xx - yy));
     const double x = frame.x(series.x[i]), y = frame.y(series.y[i]);
     if (!std::isfinite(major) || !std::isfinite(x) || !std::isfinite(y)) continue;
+    MarkTimes times;
+    times.add(time_of(series, i));
     text += fmt::format(
         "<ellipse class=\"around {}\" rx=\"{:.1f}\" ry=\"{:.1f}\" transform=\"translate({:.1f} {:.1f}) "
-        "rotate({:.1f})\"/>\n",
-        series.look.name, major, minor, x, y, turn);
+        "rotate({:.1f})\"{}/>\n",
+        series.look.name, major, minor, x, y, turn, times.attribute());
   }
   return text;
 }
 
 std::string draw_sights(const PlotSeries& series, const PlotFrame& frame) {
   std::string path;
+  MarkTimes times;
   const double far = std::hypot(frame.width, frame.height);
   for (std::size_t i = 0; i < std::min({series.x.size(), series.y.size(), series.y2.size()}); ++i) {
     const double x = frame.x(series.x[i]), y = frame.y(series.y[i]), bearing = radians(series.y2[i]);
     if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(bearing)) continue;
     path += fmt::format("M{:.1f} {:.1f}l{:.1f} {:.1f}", x, y, far * std::sin(bearing), -far * std::cos(bearing));
+    times.add(time_of(series, i));
   }
-  return path.empty() ? "" : fmt::format("<path class=\"sight {}\" d=\"{}\"/>\n", series.look.name, path);
+  if (path.empty()) return {};
+  return fmt::format("<path class=\"sight {}\" d=\"{}\"{}/>\n", series.look.name, path, times.attribute());
 }
 
 std::string draw_series(const PlotSeries& series, const PlotFrame& frame) {

@@ -60,6 +60,7 @@ int command_line(int argc, const char* const* argv) {
   add_train(all);
   add_track(all);
   add_compare(all);
+  add_report(all);
   add_check(all);
   add_rules(all);
   add_tma(all);

@@ -10,6 +10,7 @@
 #include "app/data_folder.hpp"
 #include "app/log_options.hpp"
 #include "app/output.hpp"
+#include "app/report_output.hpp"
 #include "app/subcommands.hpp"
 #include "app/workflow.hpp"
 #include "truebearing/evaluation/report.hpp"
@@ -22,6 +23,7 @@ struct CompareArguments {
   std::string json;
   std::string truth;
   LogArguments reading;
+  ReportArguments report;
   std::optional<std::uint64_t> seed;
   std::size_t runs = 0;
   int threads = 0;
@@ -33,7 +35,7 @@ void run_compare(const CompareArguments& options) {
   Study study = Study::load(options.study);
   std::vector<std::filesystem::path> inputs = study.input_files();
   if (!options.truth.empty()) inputs.emplace_back(options.truth);
-  check_outputs({options.json}, inputs);
+  check_outputs({options.json, options.report.page}, inputs);
   const std::uint64_t seed = options.seed.value_or(study.seed());
   CorrectionModels models;
   if (options.retrain) {
@@ -54,6 +56,7 @@ void run_compare(const CompareArguments& options) {
   comparison_options.seed = seed;
   if (options.runs > 0) comparison_options.runs = options.runs;
   comparison_options.threads = options.threads;
+  comparison_options.details = options.report.wanted();
   const TrackerSet trackers = study.make_tracker_set(models);
   Comparison comparison;
   {
@@ -67,8 +70,13 @@ void run_compare(const CompareArguments& options) {
     comparison.ns_per_step.emplace_back(trackers.name(i),
                                         time_per_step_ns(*study.make_tracker(trackers.name(i), models), timed));
 
-  if (!is_standard_output(options.json)) fmt::print("{}{}", notes, comparison_table(comparison));
-  if (!options.json.empty()) write_output(options.json, comparison_json(comparison));
+  if (!is_standard_output(options.json) && !is_standard_output(options.report.page))
+    fmt::print("{}{}", notes, comparison_table(comparison));
+  std::vector<RunPicture> pictures;
+  if (options.report.wanted()) pictures = picture_runs(trackers, scenarios, comparison_options, comparison);
+  const std::string json = comparison_json(comparison, pictures);
+  if (!options.json.empty()) write_output(options.json, json);
+  if (options.report.wanted()) write_report(options.report, {parse_results(json, study.name())});
 }
 
 }  // namespace
@@ -86,6 +94,7 @@ void add_compare(const Subcommands& all) {
   add_log_arguments(command, options->reading);
   command.flag("--retrain", options->retrain, "tune and train afresh with this seed; files are left alone");
   command.argument("--json", options->json, "write the results as JSON; - is standard output");
+  add_report_arguments(command, options->report);
   command.flag("--quiet", options->quiet, "no progress");
   command.runs([options] { run_compare(*options); });
 }

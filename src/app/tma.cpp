@@ -9,11 +9,13 @@
 
 #include "app/log_options.hpp"
 #include "app/output.hpp"
+#include "app/report_output.hpp"
 #include "app/subcommands.hpp"
 #include "app/tma_answer.hpp"
 #include "truebearing/core/angle.hpp"
 #include "truebearing/core/error.hpp"
 #include "truebearing/recording/recording_csv.hpp"
+#include "truebearing/report/tma_page.hpp"
 #include "truebearing/tma/target_motion_batch.hpp"
 #include "truebearing/tma/cho_2015.hpp"
 #include "truebearing/tma/frequency_changes.hpp"
@@ -26,6 +28,7 @@ struct TmaArguments {
   std::string method = "ml";
   std::string json;
   LogArguments reading;
+  ReportArguments report;
   double sigma_deg = 0.0;
   double from_s = -std::numeric_limits<double>::infinity();
   double to_s = std::numeric_limits<double>::infinity();
@@ -310,10 +313,23 @@ void solve(Windows& windows, const TmaArguments& options, TmaAnswer& answer) {
   find_causes(answer);
 }
 
+std::vector<TmaBearing> drawn_bearings(const BearingWindow& window, const BatchEstimate& estimate) {
+  std::vector<TmaBearing> drawn;
+  for (std::size_t i = 0; i < window.size(); ++i)
+    drawn.push_back({window.time_s(i), degrees(window.bearing_rad(i)), window.site_m(i),
+                     window.residual(i, estimate.x, estimate.time_s) * std::sqrt(window.weight(i))});
+  return drawn;
+}
+
+void write_tma_report(const ReportArguments& report, const std::string& json, const std::string& log) {
+  if (!report.page.empty()) write_output(report.page, tma_page(json, log));
+  if (!report.svg.empty()) write_plots(report.svg, tma_plot_files(json, log));
+}
+
 void tma(const TmaArguments& options) {
   if ((options.range_m > 0.0) != (options.range_sigma_m > 0.0))
     throw InputError("--range, --range-sigma", "stand one without the other", "both or neither");
-  check_outputs({options.json}, {options.log});
+  check_outputs({options.json, options.report.page}, {options.log});
   const Recording recording = read_log(options);
   TmaAnswer answer;
   answer.log = options.log;
@@ -325,8 +341,12 @@ void tma(const TmaArguments& options) {
   if (!answer.estimate.found)
     throw InputError(options.log, "has bearings that no start of " + options.method + " ends in numbers for",
                      "another --method");
-  if (!is_standard_output(options.json)) fmt::print("{}", tma_text(answer));
-  if (!options.json.empty()) write_output(options.json, tma_json(answer));
+  if (options.report.wanted()) answer.drawn = drawn_bearings(windows.bearings, answer.estimate);
+  if (!is_standard_output(options.json) && !is_standard_output(options.report.page)) fmt::print("{}", tma_text(answer));
+  if (options.json.empty() && !options.report.wanted()) return;
+  const std::string json = tma_json(answer);
+  if (!options.json.empty()) write_output(options.json, json);
+  write_tma_report(options.report, json, options.log);
 }
 
 }  // namespace
@@ -376,6 +396,7 @@ void add_tma(const Subcommands& all) {
       .positive();
   command.argument("--range-sigma", options->range_sigma_m, "of map: its standard deviation, m").positive();
   command.argument("--json", options->json, "write the answer as JSON; - is standard output");
+  add_report_arguments(command, options->report);
   add_log_arguments(command, options->reading);
   command.runs([options] { tma(*options); });
 }

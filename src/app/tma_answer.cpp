@@ -298,6 +298,20 @@ std::string ambiguity_lines(const TmaAnswer& answer) {
   return text;
 }
 
+Json bearings_json(const std::vector<TmaBearing>& bearings) {
+  Json json;
+  for (const char* column : {"time_s", "own_east_m", "own_north_m", "bearing_deg", "residual_sigmas"})
+    json[column] = Json::array();
+  for (const TmaBearing& bearing : bearings) {
+    json["time_s"].push_back(bearing.time_s);
+    json["own_east_m"].push_back(bearing.own_ship_m.x());
+    json["own_north_m"].push_back(bearing.own_ship_m.y());
+    json["bearing_deg"].push_back(bearing.bearing_deg);
+    json["residual_sigmas"].push_back(finite(bearing.residual_sigmas));
+  }
+  return json;
+}
+
 Json motion_json(const Eigen::Vector4d& x, const SensorState& own_ship) {
   const Motion motion(x, own_ship);
   return {{"range_m", motion.range_m},
@@ -452,6 +466,7 @@ std::string tma_json(const TmaAnswer& answer) {
   for (const Eigen::Vector4d& x : answer.hypotheses) json["hypotheses"].push_back(motion_json(x, answer.own_ship));
   if (answer.truth) json["truth"] = motion_json(answer.truth->head<4>(), answer.own_ship);
   if (const auto frequency_hz = true_frequency(answer)) json["truth"]["frequency_hz"] = *frequency_hz;
+  if (!answer.drawn.empty()) json["details"] = bearings_json(answer.drawn);
   return json_text(json);
 }
 

@@ -52,6 +52,13 @@ struct TmaCause {
   std::string says;
 };
 
+/// A bearing that was used, as it is drawn.
+struct TmaBearing {
+  double time_s, bearing_deg;
+  Eigen::Vector2d own_ship_m;
+  double residual_sigmas;  ///< measured minus that of the estimate, in standard deviations
+};
+
 struct TmaAnswer {
   std::string log;
   std::string method;
@@ -78,6 +85,7 @@ struct TmaAnswer {
 
   std::vector<Ambiguity> ambiguities;
   std::vector<Eigen::Vector4d> hypotheses;  ///< where the range is open: the state at each of some ranges
+  std::vector<TmaBearing> drawn;            ///< all of them, where a report is wanted
   std::optional<BoundedVector> truth;       ///< at the last bearing; its fifth component is the source's frequency
 
   /// Do the bearings determine the range?

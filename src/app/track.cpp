@@ -14,6 +14,7 @@
 #include "app/data_folder.hpp"
 #include "app/log_options.hpp"
 #include "app/output.hpp"
+#include "app/report_output.hpp"
 #include "app/subcommands.hpp"
 #include "app/track_report.hpp"
 #include "truebearing/evaluation/report.hpp"
@@ -38,11 +39,15 @@ struct TrackArguments {
   std::string json;
   std::string events;
   LogArguments reading;
+  ReportArguments report;
 
+  /// Scores are asked for, which takes a log with truth.
+  bool wants_scores() const { return !json.empty() || report.wanted(); }
   bool only_text_for_programs() const {
-    return is_standard_output(output) || is_standard_output(json) || is_standard_output(events);
+    return is_standard_output(output) || is_standard_output(json) || is_standard_output(events) ||
+           is_standard_output(report.page);
   }
-  std::vector<std::string> outputs() const { return {output, json, events}; }
+  std::vector<std::string> outputs() const { return {output, json, events, report.page}; }
 };
 
 // Writes the records of all trackers whose state is the largest, as they come.
@@ -238,20 +243,29 @@ void leave_out_unless_told(std::optional<Bound>& bound, const std::vector<Record
   }
 }
 
-Comparison score(const Study& study, const TrackArguments& options, const TrackerSet& trackers,
-                 std::vector<Recording>& tracks, double epoch_s) {
+struct Scored {
+  Comparison comparison;
+  std::vector<RunPicture> pictures;  // where a report is wanted
+};
+
+Scored score(const Study& study, const TrackArguments& options, const TrackerSet& trackers,
+             std::vector<Recording>& tracks, double epoch_s) {
   ComparisonOptions comparison_options = study.comparison_options();
   comparison_options.runs = tracks.size();
   comparison_options.threads = 1;
+  comparison_options.details = options.report.wanted();
   for (Recording& track : tracks)
     for (Measurement& measurement : track.measurements) measurement.time_s -= epoch_s;
   leave_out_unless_told(comparison_options.cramer_rao, tracks, comparison_options.scoring);
   leave_out_unless_told(comparison_options.angle_bound, tracks, comparison_options.scoring);
   const LogScenario scenario(tracks);
-  Comparison comparison = compare(trackers, {{options.log, &scenario}}, comparison_options);
-  comparison.study = study.name() + " on " + options.log;
-  for (double& time_s : comparison.time_s) time_s += epoch_s;
-  return comparison;
+  const std::vector<NamedScenario> scenarios{{options.log, &scenario}};
+  Scored scored{compare(trackers, scenarios, comparison_options), {}};
+  if (options.report.wanted())
+    scored.pictures = picture_runs(trackers, scenarios, comparison_options, scored.comparison);
+  scored.comparison.study = study.name() + " on " + options.log;
+  for (double& time_s : scored.comparison.time_s) time_s += epoch_s;
+  return scored;
 }
 
 void report(const Study& study, const TrackArguments& options, const TrackRun& run, const Recording::Counts& rows) {
@@ -277,20 +291,24 @@ void finish(const Study& study, const TrackArguments& options, TrackRun& run, co
   const bool for_people = !options.only_text_for_programs();
   if (for_people) report(study, options, run, rows);
   for (const std::string& line : consistency_warnings(run.all())) say("truebearing: " + line);
-  std::optional<Comparison> comparison;
-  if (!tracks.empty()) comparison = score(study, options, run.trackers(), tracks, run.contents().epoch_s);
+  std::optional<Scored> scored;
+  if (!tracks.empty()) scored = score(study, options, run.trackers(), tracks, run.contents().epoch_s);
   run.finish();
-  if (comparison && for_people) fmt::print("\n{}", comparison_table(*comparison));
-  if (comparison && !options.json.empty()) write_output(options.json, comparison_json(*comparison));
+  if (!scored) return;
+  if (for_people) fmt::print("\n{}", comparison_table(scored->comparison));
+  if (!options.wants_scores()) return;
+  const std::string json = comparison_json(scored->comparison, scored->pictures);
+  if (!options.json.empty()) write_output(options.json, json);
+  if (options.report.wanted()) write_report(options.report, {parse_results(json, options.log)});
 }
 
 InputError no_truth(const std::string& log) {
-  return {log, "has no truth to score against", "a log with truth, or no --json"};
+  return {log, "has no truth to score against", "a log with truth, or neither --json nor --report"};
 }
 
 void track_step_log(const Study& study, const StepLogScenario& logs, const TrackArguments& options) {
   std::vector<RecordedTrack> read = logs.read(options.log);
-  if (!options.json.empty() && !read.front().recording.truth_space) throw no_truth(options.log);
+  if (options.wants_scores() && !read.front().recording.truth_space) throw no_truth(options.log);
   const std::vector<Measurement>& first = read.front().recording.measurements;
   TrackRun run(study, options, static_cast<int>(first.front().z.size()));
   Recording::Counts rows;
@@ -308,7 +326,7 @@ void track_step_log(const Study& study, const StepLogScenario& logs, const Track
 void track_snapshots(const Study& study, const TrackArguments& options) {
   Recording recording = read_snapshot_log(options.log);
   check_measured(recording.measured, study.scenario(), options.log);
-  if (!options.json.empty() && !recording.truth_space) throw no_truth(options.log);
+  if (options.wants_scores() && !recording.truth_space) throw no_truth(options.log);
   TrackRun run(study, options, static_cast<int>(recording.measured.size()));
   const double epoch_s = study_epoch_s(study, recording.measurements.front().time_s);
   say_epoch(options, epoch_s);
@@ -325,9 +343,9 @@ void track_rows(const Study& study, const TrackArguments& options) {
   const RecordingOptions reading = options.reading.over(study.recording_options());
   MeasurementLog reader(with_names(CsvReader(std::filesystem::path(options.log)), reading), reading);
   check_measured(reader.measured(), study.scenario(), options.log);
-  if (!options.json.empty() && !reader.truth_space()) throw no_truth(options.log);
+  if (options.wants_scores() && !reader.truth_space()) throw no_truth(options.log);
   // Whoever is only given the records needs no scores, and the log has no end that could be waited for.
-  const bool scores = reader.truth_space() && (!options.only_text_for_programs() || !options.json.empty());
+  const bool scores = reader.truth_space() && (!options.only_text_for_programs() || options.wants_scores());
   TrackRun run(study, options, static_cast<int>(reader.measured().size()));
   Recording recording;
   for (bool first = true; reader.next(); first = false) {
@@ -377,6 +395,7 @@ void add_track(const Subcommands& all) {
   command.argument("--json", options->json, "write the scores as JSON, where the log has truth; - is standard output");
   command.argument("--events", options->events,
                    "write what the trackers noticed (turns, a source's jumps, ...) as CSV; - is standard output");
+  add_report_arguments(command, options->report);
   add_log_arguments(command, options->reading);
   command.runs([options] { track(*options); });
 }

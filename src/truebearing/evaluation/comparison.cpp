@@ -35,12 +35,13 @@ class ComparisonTally {
  public:
   // expected: how many errors there will be of a quantity. All but the trackers must outlive it.
   ComparisonTally(const TrackerSet& trackers, const std::vector<Scorer>& scorers, const ComparisonOptions& options,
-                  std::size_t expected)
+                  std::size_t expected, bool details)
       : options_(options) {
     for (std::size_t i = 0; i < scorers.size(); ++i) {
       const std::string& name = trackers.name(static_cast<int>(i));
       trackers_.push_back(
           {SummaryTally(name, scorers[i], options.scoring, expected), MetricTallies(options.scoring, scorers[i]), {}});
+      if (details) details_.emplace_back(scorers[i].dimension());
     }
     if (!options.global_minimum.empty()) global_minimum_ = index_of(trackers, options.global_minimum);
     for (const auto& [a, b] : options.pairs) {
@@ -54,6 +55,7 @@ class ComparisonTally {
     for (std::size_t i = 0; i < trackers_.size(); ++i) {
       trackers_[i].summary.add(run.scores[i]);
       trackers_[i].metrics.add(run.scores[i]);
+      if (!details_.empty()) details_[i].add(run.scores[i]);
       if (global_minimum_ && *global_minimum_ != i)
         trackers_[i].global_minimum.add(run.scores[i], run.scores[*global_minimum_]);
     }
@@ -81,6 +83,7 @@ class ComparisonTally {
       if (options_.cramer_rao) add_metrics(range_efficiency(summary.metrics, comparison.cramer_rao->metrics));
       add_metrics(tracker.global_minimum.metrics());
     }
+    for (const DetailsTally& tally : details_) comparison.details.push_back(tally.details());
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
       const auto& [a, b] = options_.pairs[i];
       Comparison::Pair& pair = comparison.pairs.emplace_back(Comparison::Pair{a, b, pairs_[i].rmse.differences()});
@@ -103,6 +106,7 @@ class ComparisonTally {
   };
   const ComparisonOptions& options_;
   std::vector<OfTracker> trackers_;
+  std::vector<DetailsTally> details_;  // [tracker], or empty
   std::optional<std::size_t> global_minimum_;
   std::vector<Pair> pairs_;
   BoundTally bound_;
@@ -188,7 +192,8 @@ Comparison compare(const TrackerSet& trackers, const std::vector<NamedScenario>&
 
   std::vector<std::size_t> expected;
   for (const NamedScenario& named : scenarios) expected.push_back(errors_in(*named.scenario, options));
-  ComparisonTally all(trackers, scorers, options, std::accumulate(expected.begin(), expected.end(), std::size_t{0}));
+  ComparisonTally all(trackers, scorers, options, std::accumulate(expected.begin(), expected.end(), std::size_t{0}),
+                      options.details);
   std::vector<ComparisonOfSet> sets;
   std::vector<double> time_s;
   std::vector<std::string> phases;
@@ -199,7 +204,7 @@ Comparison compare(const TrackerSet& trackers, const std::vector<NamedScenario>&
       progress = [&](std::size_t done, std::size_t) {
         options.progress(i * options.runs + done, scenarios.size() * options.runs);
       };
-    ComparisonTally alone(trackers, scorers, options, expected[i]);
+    ComparisonTally alone(trackers, scorers, options, expected[i], false);
     set.run(progress, [&](const RunOutcome& run) {
       all.add(run);
       if (scenarios.size() > 1) alone.add(run);

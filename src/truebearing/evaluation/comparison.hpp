@@ -9,6 +9,7 @@
 
 #include "truebearing/evaluation/angle_bound_summary.hpp"
 #include "truebearing/evaluation/bound_summary.hpp"
+#include "truebearing/evaluation/comparison_details.hpp"
 #include "truebearing/evaluation/monte_carlo.hpp"
 #include "truebearing/evaluation/summary.hpp"
 #include "truebearing/simulation/scenario.hpp"
@@ -26,6 +27,7 @@ struct ComparisonOptions {
   std::optional<TargetMotionBound> cramer_rao;             ///< at the times of the scoring
   std::optional<AngleBound> angle_bound;                   ///< of several targets at a line array
   std::string global_minimum;  ///< the batch tracker whose costs the others' are compared with; or empty
+  bool details = false;        ///< keep what plots need besides
   Progress progress;
 };
 
@@ -38,6 +40,7 @@ struct Comparison {
   std::vector<double> time_s;       ///< of the steps, in the first run
   std::vector<std::string> phases;  ///< names of the phases that the scenario tells apart
   std::vector<TrackerSummary> trackers;
+  std::vector<TrackerDetails> details;  ///< [tracker], over all sets; empty where the options do not ask for them
   struct Pair {
     std::string a, b;
     std::vector<PairedDifference> differences;  ///< of the RMSE; then of the metric families

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "truebearing/evaluation/details_json.hpp"
 #include "truebearing/evaluation/pair_table.hpp"
 #include "truebearing/evaluation/text_table.hpp"
 #include "truebearing/evaluation/time_table.hpp"
@@ -228,7 +229,7 @@ std::string comparison_table(const Comparison& comparison) {
   return text + "all sets together\n" + tables(comparison);
 }
 
-std::string comparison_json(const Comparison& comparison) {
+std::string comparison_json(const Comparison& comparison, const std::vector<RunPicture>& pictures) {
   Json json;
   json["study"] = comparison.study;
   json["seed"] = comparison.seed;
@@ -236,6 +237,7 @@ std::string comparison_json(const Comparison& comparison) {
   json["version"] = TRUEBEARING_VERSION;
   add_figures(comparison, json);
   for (const auto& [name, set] : comparison.sets) add_figures(set, json["sets"][name]);
+  add_details(comparison, pictures, json);
   return json_text(json);
 }
 

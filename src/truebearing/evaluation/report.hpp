@@ -3,8 +3,10 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "truebearing/evaluation/comparison.hpp"
+#include "truebearing/evaluation/run_picture.hpp"
 
 namespace truebearing {
 
@@ -12,7 +14,7 @@ namespace truebearing {
 std::string comparison_table(const Comparison& comparison);
 
 /// The results as JSON, indented, with a newline at the end. Byte for byte the same for the same comparison, timings
-/// aside.
-std::string comparison_json(const Comparison& comparison);
+/// aside. With the details of the comparison, where it has them, and the pictures of its runs: what a report draws.
+std::string comparison_json(const Comparison& comparison, const std::vector<RunPicture>& pictures = {});
 
 }  // namespace truebearing

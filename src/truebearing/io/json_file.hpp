@@ -20,6 +20,8 @@ struct JsonLimits {
 nlohmann::json read_json_file(const std::filesystem::path& path, JsonLimits limits = {});
 /// The same for text; `name` stands for the file in messages.
 nlohmann::json parse_json(std::string_view text, const std::string& name, JsonLimits limits = {});
+/// The same, its keys in the order of the text.
+nlohmann::ordered_json parse_ordered_json(std::string_view text, const std::string& name, JsonLimits limits = {});
 
 /// The text of a file: indented by two, in the order in which the keys were added.
 std::string json_text(const nlohmann::ordered_json& value);

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/report_output.hpp"
+
+#include <filesystem>
+#include <system_error>
+
+#include "app/output.hpp"
+#include "truebearing/core/error.hpp"
+
+namespace truebearing {
+
+void add_report_arguments(const Subcommand& command, ReportArguments& arguments) {
+  command.argument(
+      "--report", arguments.page,
+      "write the results as a page with plots, which opens from disk; --json then has what the plots show");
+  command.argument("--svg", arguments.svg, "write the plots as SVG files into this folder");
+}
+
+void write_plots(const std::string& folder, const std::vector<PlotFile>& plots) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw InputError(folder, "cannot be made: " + error.message(), "a folder");
+  for (const PlotFile& plot : plots) write_output((std::filesystem::path(folder) / plot.name).string(), plot.svg);
+}
+
+void write_report(const ReportArguments& arguments, const std::vector<Results>& results) {
+  if (!arguments.page.empty()) write_output(arguments.page, report_page(results));
+  if (!arguments.svg.empty()) write_plots(arguments.svg, plot_files(results));
+}
+
+}  // namespace truebearing

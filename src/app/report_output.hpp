@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// --report and --svg, which several subcommands take: results as a page, its plots as files.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/arguments.hpp"
+#include "truebearing/report/page.hpp"
+#include "truebearing/report/results.hpp"
+
+namespace truebearing {
+
+struct ReportArguments {
+  std::string page;  ///< a file, or empty
+  std::string svg;   ///< a folder, or empty
+
+  bool wanted() const { return !page.empty() || !svg.empty(); }
+};
+
+void add_report_arguments(const Subcommand& command, ReportArguments& arguments);
+
+/// Writes plots into a folder, which is made where it is not there. Throws InputError.
+void write_plots(const std::string& folder, const std::vector<PlotFile>& plots);
+
+/// Writes what is wanted. Throws InputError.
+void write_report(const ReportArguments& arguments, const std::vector<Results>& results);
+
+}  // namespace truebearing

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "truebearing/evaluation/details_json.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace truebearing {
+namespace {
+
+using OrderedJson = nlohmann::ordered_json;
+
+// A picture is some 500 points wide: of a longer run every n-th step is drawn.
+constexpr std::size_t kMostDrawnSteps = 500;
+
+OrderedJson six_digits(double value) {
+  if (!std::isfinite(value)) return nullptr;
+  return std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr);
+}
+
+OrderedJson six_digits(const std::vector<double>& values, std::size_t every = 1) {
+  OrderedJson array = OrderedJson::array();
+  for (std::size_t i = 0; i < values.size(); i += every) array.push_back(six_digits(values[i]));
+  return array;
+}
+
+// Times are not rounded: those of a log may be seconds of an epoch.
+OrderedJson times_json(const std::vector<double>& values, std::size_t every) {
+  OrderedJson array = OrderedJson::array();
+  for (std::size_t i = 0; i < values.size(); i += every) array.push_back(values[i]);
+  return array;
+}
+
+OrderedJson line_json(const DrawnLine& line, std::size_t every) {
+  OrderedJson json{{"track", line.track}, {"time_s", times_json(line.time_s, every)}};
+  if (!line.x.empty()) json["x"] = six_digits(line.x, every);
+  json["y"] = six_digits(line.y, every);
+  return json;
+}
+
+OrderedJson track_json(const DrawnTrack& track, std::size_t every) {
+  OrderedJson json{{"tracker", track.tracker}};
+  json.update(line_json(track.line, every));
+  if (!track.xx.empty()) {
+    json["xx"] = six_digits(track.xx, every);
+    json["xy"] = six_digits(track.xy, every);
+  }
+  json["yy"] = six_digits(track.yy, every);
+  return json;
+}
+
+OrderedJson picture_json(const RunPicture& picture) {
+  std::size_t steps = 0;
+  for (const DrawnLine& truth : picture.truth) steps = std::max(steps, truth.time_s.size());
+  const std::size_t every = steps / (kMostDrawnSteps + 1) + 1;
+  OrderedJson json{{"which", picture.which}, {"run", picture.run}};
+  if (!picture.set.empty()) json["set"] = picture.set;
+  json["judged_by"] = picture.judged_by;
+  json["quantity"] = picture.quantity;
+  json["rmse"] = six_digits(picture.rmse);
+  json["every"] = every;
+  if (picture.in_plane)
+    json["plane"] = true;
+  else
+    json["component"] = picture.component;
+  json["truth"] = OrderedJson::array();
+  for (const DrawnLine& truth : picture.truth) json["truth"].push_back(line_json(truth, every));
+  if (!picture.measured.y.empty()) json["measured"] = line_json(picture.measured, every);
+  if (!picture.own_ship.y.empty()) {
+    json["own_ship"] = line_json(picture.own_ship, every);
+    json["own_ship"]["bearing_deg"] = six_digits(picture.bearing_deg, every);
+  }
+  json["tracks"] = OrderedJson::array();
+  for (const DrawnTrack& track : picture.tracks) json["tracks"].push_back(track_json(track, every));
+  return json;
+}
+
+}  // namespace
+
+void add_details(const Comparison& comparison, const std::vector<RunPicture>& pictures, OrderedJson& results) {
+  for (std::size_t i = 0; i < comparison.details.size(); ++i) {
+    const TrackerSummary& summary = comparison.trackers[i];
+    const TrackerDetails& details = comparison.details[i];
+    OrderedJson run_rmse = OrderedJson::object(), series_se = OrderedJson::object();
+    for (std::size_t q = 0; q < std::min(summary.quantities.size(), details.run_rmse.size()); ++q) {
+      run_rmse[summary.quantities[q].name] = six_digits(details.run_rmse[q]);
+      series_se[summary.quantities[q].name] = six_digits(details.series_se[q]);
+    }
+    results["trackers"][summary.name]["details"] = {{"run_rmse", run_rmse},
+                                                    {"series_se", series_se},
+                                                    {"nees", six_digits(details.nees)},
+                                                    {"nees_low", six_digits(details.nees_low)},
+                                                    {"nees_high", six_digits(details.nees_high)}};
+  }
+  for (const RunPicture& picture : pictures) results["pictures"].push_back(picture_json(picture));
+}
+
+}  // namespace truebearing

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// Results as a report needs them: read from the JSON that `compare --json` writes, of this version or an older one. What
+// is not known is NaN; what a file does not have is empty.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "truebearing/core/constants.hpp"
+
+namespace truebearing {
+
+struct ResultMetric {
+  std::string name, unit;
+  std::optional<double> time_s;
+  double value = kNaN, se = kNaN;
+};
+
+struct ResultQuantity {
+  std::string name;  ///< "position_m"
+  double rmse = kNaN, rmse_se = kNaN, median = kNaN, ratio_to_plain = kNaN;
+  std::vector<double> series, series_se;  ///< RMSE of each step, and its standard error
+  std::vector<double> run_rmse;           ///< [run]
+};
+
+struct ResultTracker {
+  std::string name;
+  bool is_bound = false;
+  bool corrected = false;
+  std::vector<ResultQuantity> quantities;
+  double nees = kNaN, nees_expected = kNaN, coverage95 = kNaN, loss_rate = kNaN, ns_per_step = kNaN, mean_gate = kNaN;
+  std::vector<double> time_s;                        ///< of the series
+  std::vector<double> nees_of, nees_low, nees_high;  ///< [step]: mean, and where 95 % of such means lie
+  std::vector<ResultMetric> metrics;
+
+  const ResultQuantity* quantity(std::string_view quantity_name) const;
+};
+
+/// Of `paired`: a - b, the mean over runs and its standard error.
+struct ResultPair {
+  std::string a, b, quantity;
+  double mean = kNaN, se = kNaN;
+};
+
+/// The figures of all runs, or of one set of them.
+struct ResultFigures {
+  std::vector<ResultTracker> trackers;  ///< in the study's order
+  std::vector<ResultTracker> bounds;    ///< those that are no trackers: cramer_rao, posterior
+  std::vector<ResultPair> pairs;
+
+  const ResultTracker* tracker(std::string_view name) const;
+};
+
+struct ResultLine {
+  int track = 0;
+  std::vector<double> time_s, x, y;  ///< x is empty where y is drawn over time
+};
+
+struct ResultTrack {
+  std::string tracker;
+  ResultLine line;
+  std::vector<double> xx, xy, yy;  ///< covariance
+};
+
+struct ResultPicture {
+  std::string which, set, judged_by, quantity, component;
+  double run = kNaN, rmse = kNaN, every = 1.0;
+  bool in_plane = false;
+  std::vector<ResultLine> truth;
+  ResultLine measured, own_ship;
+  std::vector<double> bearing_deg;
+  std::vector<ResultTrack> tracks;
+};
+
+struct Results {
+  std::string file;  ///< what it is called
+  std::string study, version;
+  double seed = kNaN, runs = kNaN;
+  ResultFigures all;
+  struct Set {
+    std::string name;
+    ResultFigures figures;
+  };
+  std::vector<Set> sets;
+  std::vector<ResultPicture> pictures;
+};
+
+/// Throws InputError that names the file, and the key where one is missing or of the wrong type. file: what messages and
+/// the page call it.
+Results parse_results(std::string_view json, const std::string& file);
+Results read_results(const std::filesystem::path& file);
+
+}  // namespace truebearing

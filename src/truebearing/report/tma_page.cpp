@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "truebearing/report/tma_page.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "truebearing/io/json_file.hpp"
+#include "truebearing/report/markup.hpp"
+#include "truebearing/report/page_parts.hpp"
+#include "truebearing/report/result_reader.hpp"
+
+namespace truebearing {
+namespace {
+
+constexpr JsonLimits kTmaLimits{std::size_t{1} << 28, 64};
+// Bearing lines beyond some dozens cover each other.
+constexpr std::size_t kMostTmaSights = 60;
+
+// A straight course between two times, of a state [east, north, east_mps, north_mps] at the later one.
+PlotSeries course_of(const ResultReader& state, const std::string& name, const Look& look, double duration_s) {
+  const double east = state.at("east_m").number(), north = state.at("north_m").number();
+  const double east_mps = state.at("east_mps").number(), north_mps = state.at("north_mps").number();
+  return {name, look, Shape::line, {east - duration_s * east_mps, east}, {north - duration_s * north_mps, north}};
+}
+
+Plot plane_plot(const ResultReader& json) {
+  const ResultReader details = json.at("details");
+  Plot plot;
+  plot.id = "plane";
+  plot.title = "Own ship, bearings and target";
+  plot.x_label = "East (m)";
+  plot.y_label = "North (m)";
+  plot.equal = true;
+  plot.caption =
+      "Each target's course is that of the estimate from the first bearing to the last, where its ellipse of "
+      "two standard deviations stands.";
+  const std::vector<double> east = details.at("own_east_m").numbers(), north = details.at("own_north_m").numbers();
+  const std::vector<double> bearing_deg = details.at("bearing_deg").numbers();
+  if (east.size() != north.size() || east.size() != bearing_deg.size())
+    throw details.error("has columns of unequal length");
+  PlotSeries sights{"bearing", {"measured"}, Shape::sights, {}, {}, {}};
+  const std::size_t every = east.size() / (kMostTmaSights + 1) + 1;
+  for (std::size_t i = 0; i < east.size(); i += every) {
+    sights.x.push_back(east[i]);
+    sights.y.push_back(north[i]);
+    sights.y2.push_back(bearing_deg[i]);
+  }
+  plot.series.push_back(std::move(sights));
+  plot.series.push_back({"own ship", {"own"}, Shape::line, east, north});
+  const double duration_s = json.at("time_s").number() - json.at("from_s").number();
+  if (json.has("truth")) plot.series.push_back(course_of(json.at("truth"), "truth", {"truth"}, duration_s));
+  // Where the range is open, ranges over some decades explain the bearings: the farthest would leave nothing to see of
+  // the others.
+  constexpr double kFarthest = 10.0;
+  bool first = true;
+  double nearest_m = kInfinity;
+  for (const ResultReader& other : json.at("hypotheses").items())
+    nearest_m = std::min(nearest_m, other.at("range_m").number());
+  for (const char* key : {"ambiguities", "hypotheses"})
+    for (const ResultReader& other : json.at(key).items()) {
+      if (other.at("range_m").number() > kFarthest * nearest_m) continue;
+      plot.series.push_back(course_of(other, first ? "also possible" : "", tracker_look(1), duration_s));
+      first = false;
+    }
+  PlotSeries target = course_of(json.at("estimate"), "target", tracker_look(0), duration_s);
+  const std::vector<ResultReader> covariance = json.at("covariance").items();
+  if (covariance.size() != 4) throw json.error("has a covariance that is not 4 by 4");
+  const std::vector<double> row = covariance[0].numbers(), second = covariance[1].numbers();
+  if (row.size() != 4 || second.size() != 4) throw json.error("has a covariance that is not 4 by 4");
+  plot.series.push_back(
+      {"", target.look, Shape::ellipses, {target.x[1]}, {target.y[1]}, {}, {row[0]}, {row[1]}, {second[1]}});
+  plot.series.push_back({"", target.look, Shape::dots, {target.x[1]}, {target.y[1]}});
+  plot.series.push_back(std::move(target));
+  return plot;
+}
+
+Plot residual_plot(const ResultReader& json) {
+  const ResultReader details = json.at("details");
+  Plot plot;
+  plot.id = "residuals";
+  plot.title = "What is left of the bearings";
+  plot.x_label = "time (s)";
+  plot.y_label = "residual (standard deviations)";
+  plot.caption =
+      "Measured bearing minus that of the estimate. 19 of 20 lie in the band where one course and speed "
+      "explains them; what bends away from nothing is a manoeuvre, a bias or another contact.";
+  const std::vector<double> time_s = details.at("time_s").numbers();
+  if (time_s.empty()) return plot;
+  constexpr double kOf95Percent = 1.96;
+  const double zero_s = time_s.front() > 10.0 * (time_s.back() - time_s.front()) ? time_s.front() : 0.0;
+  if (zero_s > 0.0) plot.x_label = fmt::format("time (s) since {:.15g} s", zero_s);
+  const auto from_zero = [&](std::vector<double> times_s) {
+    for (double& time : times_s) time -= zero_s;
+    return times_s;
+  };
+  const std::vector<double> ends = from_zero({time_s.front(), time_s.back()});
+  plot.series.push_back(
+      {"95 %", {"measured"}, Shape::band, ends, {-kOf95Percent, -kOf95Percent}, {kOf95Percent, kOf95Percent}});
+  plot.series.push_back({"", {"ideal"}, Shape::line, ends, {0.0, 0.0}});
+  const std::vector<double> residuals = details.at("residual_sigmas").numbers();
+  if (residuals.size() != time_s.size()) throw details.error("has columns of unequal length");
+  plot.series.push_back({"a bearing", tracker_look(0), Shape::dots, from_zero(time_s), residuals});
+  PlotSeries outliers{"outlier", tracker_look(1), Shape::dots, {}, {}};
+  for (const ResultReader& outlier : json.at("outliers").at("bearings").items()) {
+    const auto at = std::find(time_s.begin(), time_s.end(), outlier.at("time_s").number());
+    if (at == time_s.end()) continue;
+    outliers.x.push_back(*at - zero_s);
+    outliers.y.push_back(residuals.at(static_cast<std::size_t>(at - time_s.begin())));
+  }
+  if (!outliers.x.empty()) plot.series.push_back(std::move(outliers));
+  return plot;
+}
+
+std::string solution_table(const ResultReader& json) {
+  struct Row {
+    const char *key, *name, *unit;
+  };
+  constexpr Row kRows[] = {{"range_m", "range", "m"},
+                           {"bearing_deg", "bearing", "deg"},
+                           {"course_deg", "course", "deg"},
+                           {"speed_mps", "speed", "m/s"},
+                           {"frequency_hz", "frequency of the source", "Hz"}};
+  const ResultReader estimate = json.at("estimate"), sigma = json.at("standard_deviation");
+  const bool with_truth = json.has("truth");
+  std::string rows;
+  for (const Row& row : kRows) {
+    if (!estimate.has(row.key)) continue;
+    rows += fmt::format("<tr><th scope=\"row\">{}</th><td>{} <span class=\"se\">± {}</span></td><td>{}</td>", row.name,
+                        shown(estimate.at(row.key).number(), 5), shown(sigma.number_or_nan(row.key), 2), row.unit);
+    if (with_truth) rows += fmt::format("<td>{}</td>", shown(json.at("truth").number_or_nan(row.key), 5));
+    rows += "</tr>\n";
+  }
+  return fmt::format(
+      "<div class=\"wide\" tabindex=\"0\"><table><thead><tr><th scope=\"col\">at the last bearing</th><th "
+      "scope=\"col\">estimate</th><th scope=\"col\">unit</th>{}</tr></thead><tbody>\n{}</tbody></table></div>\n",
+      with_truth ? "<th scope=\"col\">truth</th>" : "", rows);
+}
+
+}  // namespace
+
+std::vector<Plot> tma_plots(std::string_view text, const std::string& file) {
+  const nlohmann::ordered_json parsed = parse_ordered_json(text, file, kTmaLimits);
+  const ResultReader json(parsed, file);
+  std::vector<Plot> plots;
+  for (Plot plot : {plane_plot(json), residual_plot(json)})
+    if (!plot.empty()) plots.push_back(std::move(plot));
+  return plots;
+}
+
+std::string tma_page(std::string_view text, const std::string& file) {
+  const nlohmann::ordered_json parsed = parse_ordered_json(text, file, kTmaLimits);
+  const ResultReader json(parsed, file);
+  const std::string log = json.at("log").text();
+  std::string body = fmt::format(
+      "<h1>{}</h1>\n<p class=\"question\">Where is the target, and where does it go? {} bearings over {} s, method "
+      "{}.</p>\n<p class=\"answer\">{}</p>\n",
+      escaped(log), shown(json.at("bearings").number(), 9),
+      shown(json.at("time_s").number() - json.at("from_s").number(), 5), escaped(json.at("method").text()),
+      escaped(json.at("verdict").text()));
+  body += solution_table(json);
+  std::string causes;
+  for (const ResultReader& cause : json.at("causes").items())
+    causes += fmt::format("<li>{}</li>\n", escaped(cause.at("says").text()));
+  if (!causes.empty()) body += fmt::format("<h2>What the bearings look like besides</h2>\n<ul>\n{}</ul>\n", causes);
+  body += section("In the plane, and what is left", tma_plots(text, file));
+  return html_page(log, body);
+}
+
+std::vector<PlotFile> tma_plot_files(std::string_view text, const std::string& file) {
+  std::vector<PlotFile> files;
+  for (const Plot& plot : tma_plots(text, file)) files.push_back({"tma_" + plot.id + ".svg", svg_text(plot, true)});
+  return files;
+}
+
+}  // namespace truebearing

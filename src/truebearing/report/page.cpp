@@ -85,8 +85,8 @@ std::string report_page(const std::vector<Results>& all) {
   for (const Results& results : all)
     from += fmt::format("{}{} (truebearing {})", from.empty() ? "" : ", ", results.file,
                         results.version.empty() ? "of an unknown version" : results.version);
-  return page +
-         fmt::format("<footer>Made by truebearing from {}.</footer>\n</main>\n</body>\n</html>\n", escaped(from));
+  page += fmt::format("<footer>Made by truebearing from {}.</footer>\n", escaped(from));
+  return html_page(title, page);
 }
 
 std::vector<PlotFile> plot_files(const std::vector<Results>& all) {

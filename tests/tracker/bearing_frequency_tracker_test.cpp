@@ -42,6 +42,11 @@ TEST(BearingFrequencySensor, TakesWhatTheMeasurementHas) {
   EXPECT_EQ(sensor.model(m).site_velocity_mps, Eigen::Vector2d(3.0, 4.0));
   EXPECT_TRUE(sensor.has_value(without_frequency(m)));
   EXPECT_FALSE(sensor.model(without_frequency(m)).has_frequency);
+  for (const double impossible_hz : {0.0, -99.0}) {
+    m.z[1] = impossible_hz;
+    EXPECT_FALSE(sensor.model(m).has_frequency) << impossible_hz;
+    EXPECT_TRUE(std::isnan(sensor.value(m)(1))) << impossible_hz;
+  }
   m.z = BoundedVector::Constant(1, 0.3);
   m.sigma.resize(0);
   EXPECT_TRUE(sensor.has_value(m));

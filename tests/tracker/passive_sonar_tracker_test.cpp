@@ -109,6 +109,25 @@ TEST(PassiveSonarTracker, MayHideItsBatchAndItsFrequency) {
   }
 }
 
+// Twice in a row they would pass for a source that has changed.
+TEST(PassiveSonarTracker, TakesAFrequencyThatNoSourceHasForMissing) {
+  const Recording recording = frequency_run(1);
+  for (const double impossible_hz : {0.0, -50.0}) {
+    PassiveSonarTracker tracker = sonar(recording), without = sonar(recording);
+    for (std::size_t k = 0; k < recording.measurements.size(); ++k) {
+      Measurement wrong = recording.measurements[k], missing = wrong;
+      if (k > 100 && k % 10 < 3) {
+        wrong.z[1] = impossible_hz;
+        missing.z[1] = std::nan("");
+      }
+      const auto records = tracker.step(wrong), expected = without.step(missing);
+      ASSERT_EQ(records.size(), expected.size());
+      EXPECT_EQ(records[0].x, expected[0].x) << "at measurement " << k;
+    }
+    EXPECT_EQ(kinds(tracker), (std::vector{Kind::handed_over})) << impossible_hz;
+  }
+}
+
 TEST(PassiveSonarTracker, FollowsASourceThatChanges) {
   constexpr double kJump_s = 480.0;
   for (const double jump_hz : {30.0, -0.5}) {

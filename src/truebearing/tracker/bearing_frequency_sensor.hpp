@@ -43,10 +43,12 @@ struct BearingFrequencySensor {
             std::isfinite(z(1))};
   }
 
-  /// NaN in place of what is missing.
+  /// NaN in place of what is missing, and of a frequency that no source has.
   Model::Vector value(const Measurement& measurement) const {
-    Model::Vector z = Model::Vector::Constant(std::numeric_limits<double>::quiet_NaN());
+    constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+    Model::Vector z = Model::Vector::Constant(kMissing);
     if (measurement.z.size() == 1 || measurement.z.size() == 2) z.head(measurement.z.size()) = measurement.z;
+    if (z(1) <= 0.0) z(1) = kMissing;
     return z;
   }
 

@@ -97,11 +97,12 @@ void PassiveSonarTracker::remember(const StepRecord& record) {
 // f / (1 - v_r / c) with the last estimate carried to the measurement's time, so that neither own ship's manoeuvres nor
 // the turning line of sight look like changes of the source.
 std::optional<PassiveSonarTracker::Heard> PassiveSonarTracker::heard(const Measurement& measurement) const {
-  if (measurement.z.size() != 2 || !std::isfinite(measurement.z[1])) return std::nullopt;
+  const double frequency_hz = options_.sensor.value(measurement)(1);
+  if (!std::isfinite(frequency_hz)) return std::nullopt;
   BearingFrequency<>::State unit;
   unit << plane_.x, 1.0;
   unit.head<2>() += (measurement.time_s - plane_s_) * plane_.x.tail<2>();
-  return Heard{measurement.time_s, measurement.z[1] / options_.sensor.model(measurement).h(unit)(1)};
+  return Heard{measurement.time_s, frequency_hz / options_.sensor.model(measurement).h(unit)(1)};
 }
 
 // A frequency that differs from the last one is either an outlier or a change. The next one tells: where it goes with

@@ -10,6 +10,7 @@
 #include "truebearing/core/error.hpp"
 #include "truebearing/recording/snapshot_log.hpp"
 #include "truebearing/study/study.hpp"
+#include "truebearing/tracker/step_log.hpp"
 
 namespace truebearing {
 namespace {
@@ -54,10 +55,13 @@ void check_study(const std::string& path) {
 void check(const CheckArguments& options) {
   const bool is_study = std::filesystem::path(options.file).extension() == ".toml";
   const bool is_array = !is_study && is_snapshot_log(options.file);
-  if (!is_study && !is_array) return check_log_file(options.file, options.reading, options.json);
-  if (!options.json.empty()) throw InputError("--json", "is of logs in CSV", "no --json");
+  const bool is_steps = !is_study && !is_array && is_step_log(options.file);
+  if (!is_study && !is_array && !is_steps) return check_log_file(options.file, options.reading, options.json);
+  if (!options.json.empty()) throw InputError("--json", "is of logs of measurements in CSV", "no --json");
   if (is_study)
     check_study(options.file);
+  else if (is_steps)
+    check_step_log(options.file);
   else
     check_snapshot_log(options.file);
 }
@@ -69,9 +73,10 @@ void add_check(const Subcommands& all) {
   const Subcommand command = all.add(
       "check", "say whether a study is valid and what it would run, or what a log holds and whether it can be used");
   command
-      .argument("file", options->file,
-                "study file (.toml), or the name of one that comes with the program; or recorded log (CSV); - is "
-                "standard input")
+      .argument(
+          "file", options->file,
+          "study file (.toml), or the name of one that comes with the program; or recorded log (CSV or HDF5) or step log; - is "
+          "standard input")
       .required()
       .read_as(study_file);
   command.argument("--json", options->json, "write what was found in a log as JSON; - is standard output");

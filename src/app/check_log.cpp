@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "app/output.hpp"
 #include "truebearing/core/error.hpp"
@@ -12,6 +13,7 @@
 #include "truebearing/evaluation/text_table.hpp"
 #include "truebearing/recording/log_check.hpp"
 #include "truebearing/recording/snapshot_log.hpp"
+#include "truebearing/tracker/step_log.hpp"
 
 namespace truebearing {
 namespace {
@@ -92,6 +94,21 @@ void check_snapshot_log(const std::string& path) {
   fmt::print("{}: of a line array: {} intervals, {} missing, {} repeated ones dropped, {} true targets\ncan be used\n",
              shortened_from_front(printable(path), 100), recording.measurements.size(), recording.counts.missing,
              recording.counts.repeated, recording.truth.size());
+}
+
+void check_step_log(const std::string& path) {
+  const StepLog log = read_step_log(path);
+  std::set<int> tracks;
+  for (const StepRecord& record : log.records) tracks.insert(record.track);
+  const std::vector<std::string> trackers = trackers_in_step_log(path);
+  fmt::print("{}: what trackers did (a step log): {} records of {} track{}, from {} to {} s\n",
+             shortened_from_front(printable(path), 100), log.records.size(), tracks.size(),
+             tracks.size() == 1 ? "" : "s", number(log.records.front().time_s), number(log.records.back().time_s));
+  if (!trackers.empty())
+    fmt::print("trackers: {}\n", shortened(printable(fmt::format("{}", fmt::join(trackers, ", "))), kMostShown));
+  fmt::print("states: {}; {} innovations; {} truth\n", fmt::join(log.space->components, ", "),
+             log.has_innovation ? "with" : "without", log.truth_components.empty() ? "without" : "with");
+  fmt::print("can be used where a study's scenario is of the kind step_logs\n");
 }
 
 void check_log_file(const std::string& path, const LogArguments& reading, const std::string& json) {

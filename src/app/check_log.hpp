@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// truebearing check LOG.csv: what a recorded log holds, and whether it can be used.
+// truebearing check LOG: what a recorded log or a step log holds, and whether it can be used.
 #pragma once
 
 #include <string>
@@ -10,6 +10,9 @@ namespace truebearing {
 
 /// Prints what a line array's log (HDF5) holds. Throws InputError where it cannot be read.
 void check_snapshot_log(const std::string& path);
+
+/// Prints what a step log holds. Throws InputError where it cannot be read.
+void check_step_log(const std::string& path);
 
 /// Prints the report, or writes it as JSON where `json` is not empty ("-" is standard output). Throws InputError where
 /// the log cannot be used.

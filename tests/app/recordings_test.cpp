@@ -33,6 +33,22 @@ TEST(ProgramRecordings, CheckSaysWhatALogHolds) {
   EXPECT_EQ(report["period_s"]["median"], 1.0);
 }
 
+TEST(ProgramRecordings, CheckSaysWhatAStepLogHolds) {
+  const TemporaryFolder folder;
+  testing::write_study(folder, testing::replaced(testing::kStudy, "[trackers.nfnn]", "[trackers.nfnn]\nshow = false"));
+  folder.write("log.csv", "time_s,position_m\n1,100\n2,110\n3,\n4,130\n");
+  ASSERT_EQ(run(folder, "track small.toml log.csv -o steps.csv").status, 0);
+  const Outcome whole = run(folder, "check steps.csv");
+  EXPECT_EQ(whole.status, 0) << whole.err;
+  EXPECT_THAT(whole.out, AllOf(HasSubstr("step log"), HasSubstr("8 records of 1 track, from 1 to 4 s"),
+                               HasSubstr("trackers: plain, tuned\n"), HasSubstr("states: position_m, velocity_mps;")));
+  folder.write("broken.csv", "time_s,track,x_position_m,x_velocity_mps,P_1_1,P_1_2,P_2_2\n1,0,1,1,1,0,-1\n");
+  const Outcome broken = run(folder, "check broken.csv");
+  EXPECT_EQ(broken.status, 1);
+  EXPECT_THAT(broken.err, AllOf(HasSubstr("broken.csv:2"), HasSubstr("P is not")));
+  EXPECT_EQ(run(folder, "check steps.csv --json -").status, 1);
+}
+
 TEST(ProgramRecordings, CheckRefusesWhatCannotBeUsed) {
   const TemporaryFolder folder;
   folder.write("log.csv", "time_s,bearng_deg\n0,1\n");

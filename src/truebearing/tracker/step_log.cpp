@@ -5,6 +5,8 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <string_view>
+#include <system_error>
 
 #include "truebearing/core/covariance.hpp"
 #include "truebearing/core/error.hpp"
@@ -162,6 +164,26 @@ StepLog read_step_log(const std::filesystem::path& path, const std::string& trac
 StepLog read_step_log(std::istream& stream, const std::string& name, const std::string& tracker) {
   CsvReader csv(stream, name);
   return read_rows(csv, tracker);
+}
+
+bool is_step_log(const std::filesystem::path& path) {
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(path, unknown)) return false;
+  const CsvReader csv(path);
+  std::vector<std::string> components;
+  component_columns(csv, "x_", components);
+  return csv.column("track") >= 0 && csv.column("P_1_1") >= 0 && !components.empty();
+}
+
+std::vector<std::string> trackers_in_step_log(const std::filesystem::path& path) {
+  CsvReader csv(path);
+  std::vector<std::string> trackers;
+  const int column = csv.column("tracker");
+  while (column >= 0 && csv.next()) {
+    const std::string_view name = csv.text(static_cast<std::size_t>(column));
+    if (std::find(trackers.begin(), trackers.end(), name) == trackers.end()) trackers.emplace_back(name);
+  }
+  return trackers;
 }
 
 StepLogWriter::StepLogWriter(const StateSpace& space, int measurements)

@@ -32,6 +32,11 @@ struct StepLog {
 StepLog read_step_log(const std::filesystem::path& path, const std::string& tracker = {});
 StepLog read_step_log(std::istream& stream, const std::string& name, const std::string& tracker = {});
 
+/// Whether the file is a regular one whose columns are those of a step log: a track, a state and its P.
+bool is_step_log(const std::filesystem::path& path);
+/// The names in the column `tracker`, in the order in which they come; none where there is no such column.
+std::vector<std::string> trackers_in_step_log(const std::filesystem::path& path);
+
 /// Builds a step log. All records must be of one state space; blocks that a record has not become empty cells.
 class StepLogWriter {
  public:

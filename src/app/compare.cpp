@@ -13,7 +13,10 @@
 #include "app/report_output.hpp"
 #include "app/subcommands.hpp"
 #include "app/workflow.hpp"
+#include "truebearing/array/recorded_array.hpp"
 #include "truebearing/evaluation/report.hpp"
+#include "truebearing/recording/snapshot_log.hpp"
+#include "truebearing/study/measured_check.hpp"
 
 namespace truebearing {
 namespace {
@@ -44,8 +47,12 @@ void run_compare(const CompareArguments& options) {
     models = train_study(study, {}, workflow);
   }
   std::unique_ptr<Scenario> recorded;
-  if (!options.truth.empty())
+  if (!options.truth.empty()) {
     recorded = study.recorded_scenario(options.truth, options.reading.over(study.recording_options()));
+    if (is_snapshot_log(options.truth))
+      check_measured(study, Measured::snapshots(array_of(recorded->simulate({seed, Role::evaluation, 0})).sensors),
+                     options.truth);
+  }
   const std::vector<NamedScenario> scenarios =
       recorded ? std::vector<NamedScenario>{{options.truth, recorded.get()}} : study.evaluation_scenarios();
   std::string notes;

@@ -17,6 +17,7 @@
 #include "app/report_output.hpp"
 #include "app/subcommands.hpp"
 #include "app/track_report.hpp"
+#include "truebearing/array/recorded_array.hpp"
 #include "truebearing/evaluation/report.hpp"
 #include "truebearing/evaluation/time_steps.hpp"
 #include "truebearing/io/csv.hpp"
@@ -327,6 +328,8 @@ void track_snapshots(const Study& study, const TrackArguments& options) {
   Recording recording = read_snapshot_log(options.log);
   check_measured(recording.measured, study.scenario(), options.log);
   if (options.wants_scores() && !recording.truth_space) throw no_truth(options.log);
+  const LineArray array = array_of(recording);
+  check_measured(study, Measured::snapshots(array.sensors), options.log);
   TrackRun run(study, options, static_cast<int>(recording.measured.size()));
   const double epoch_s = study_epoch_s(study, recording.measurements.front().time_s);
   say_epoch(options, epoch_s);
@@ -334,6 +337,7 @@ void track_snapshots(const Study& study, const TrackArguments& options) {
   for (const Measurement& measurement : recording.measurements) run.step(measurement);
   const Recording::Counts rows = recording.counts;
   run.end_track(rows);
+  print_note(options.log, array.note());
   std::vector<Recording> tracks;
   if (recording.truth_space) tracks.push_back(std::move(recording));
   finish(study, options, run, rows, std::move(tracks));

@@ -13,6 +13,8 @@
 #include <sys/resource.h>
 
 #include "tests/app/program.hpp"
+#include "tests/support/array_recording.hpp"
+#include "truebearing/recording/snapshot_log.hpp"
 #include "truebearing/tracker/step_log.hpp"
 
 namespace truebearing::track_test {
@@ -38,6 +40,22 @@ kind = "kalman"
 motion = { model = "constant_velocity", noise = "discrete", sigma_a_mps2 = 1.0 }
 measurement = { model = "position", sigma_m = 50.0 }
 start = { kind = "two_point" }
+)";
+
+const std::string kArrayStudy = R"(name = "two"
+[scenario]
+kind = "line_array"
+period_s = 0.3
+intervals = 10
+array = { sensors = 3, spacing_m = 1.0, frequency_hz = 750.0, snapshots = 4 }
+signals = { snr_db = 10.0 }
+targets = [{ start_deg = 5.0, rate_degps = 1.0 }, { start_deg = -40.0, rate_degps = 0.0 }]
+[trackers.joint]
+kind = "joint_angles"
+targets = 2
+noise_power = 1.0
+rate_sigma_degps = 2.0
+motion = { q_deg2ps3 = 0.001, q_low_deg2ps3 = 0.001, q_high_deg2ps3 = 1.0, log_power_variance_per_s = 0.001 }
 )";
 
 // 100 m/s, with noise of about 50 m that repeats.
@@ -223,6 +241,27 @@ TEST(Track, BoundThatALogCannotHaveIsLeftOut) {
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("the bound is left out"), Not(HasSubstr("another unit"))));
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("angle deg"), HasSubstr("clean mse")));
   EXPECT_GT(read_step_log(folder.path() / "steps.csv", "joint").records.size(), 300u);
+}
+
+TEST(Track, SaysWhatAnArrayCannotTell) {
+  const TemporaryFolder folder;
+  const std::string data = std::string(TRUEBEARING_SOURCE_DIR) + "/data/studies/";
+  write_snapshot_log(folder.path() / "three.h5", testing::array_recording());
+  for (const char* command : {"track ", "compare --quiet --runs 1 --truth three.h5 "}) {
+    const Outcome few = run(folder, command + data + "array_a_10db.toml" + (command[0] == 't' ? " three.h5" : ""));
+    EXPECT_EQ(few.status, 1);
+    EXPECT_TRUE(testing::is_one_line(few.err)) << few.err;
+    EXPECT_THAT(few.err, AllOf(HasSubstr("trackers."), HasSubstr("takes an array of"), HasSubstr("three.h5 has 3")));
+  }
+  Recording wide = testing::array_recording();
+  for (Measurement& measurement : wide.measurements) measurement.snapshots->spacing_wavelengths = 2.0;
+  write_snapshot_log(folder.path() / "wide.h5", wide);
+  folder.write("two.toml", kArrayStudy);
+  const Outcome far_apart = run(folder, "track two.toml wide.h5"), near = run(folder, "track two.toml three.h5");
+  EXPECT_EQ(far_apart.status, 0) << far_apart.err;
+  EXPECT_THAT(far_apart.err, AllOf(HasSubstr("wide.h5"), HasSubstr("2 wavelengths apart, more than half of one")));
+  EXPECT_THAT(near.err, Not(HasSubstr("wavelengths")));
+  EXPECT_THAT(run(folder, "compare two.toml --quiet --runs 1 --truth wide.h5").out, HasSubstr("more than half of one"));
 }
 
 TEST(Track, CorrectedTrackerIsNotShownAsIdle) {

@@ -4,19 +4,40 @@
 #include <fmt/format.h>
 
 #include "truebearing/core/error.hpp"
+#include "truebearing/study/study.hpp"
 
 namespace truebearing {
 
+namespace {
+
+void check_one(const Tracker& tracker, const std::string& where, const Measured& given, const std::string& giver) {
+  const std::optional<Measured> taken = tracker.measures();
+  if (!taken) return;
+  if (const auto reason = mismatch(*taken, given, giver)) throw InputError(where, *reason);
+}
+
+}  // namespace
+
 void check_measured(const Tracker& tracker, const std::string& where, const Scenario& scenario,
                     const ScenarioSets& sets) {
-  const std::optional<Measured> taken = tracker.measures();
   const auto check = [&](const Scenario& one, const std::string& giver) {
-    const std::optional<Measured> given = one.measured();
-    if (!taken || !given) return;
-    if (const auto reason = mismatch(*taken, *given, giver)) throw InputError(where, *reason);
+    if (const std::optional<Measured> given = one.measured()) check_one(tracker, where, *given, giver);
   };
   check(scenario, "the scenario");
   for (const auto& [name, set] : sets) check(*set, "the set \"" + name + "\"");
+}
+
+void check_measured(const Study& study, const Measured& given, const std::string& giver) {
+  const auto check = [&](const std::string& name) {
+    check_one(*study.make_tracker(name), study.path().string() + ": trackers." + name, given, giver);
+  };
+  for (const TrackerSpec& spec : study.trackers()) {
+    if (!spec.shown) continue;
+    if (!spec.correction)
+      check(spec.name);
+    else
+      for (const std::string& member : spec.correction->members()) check(member);
+  }
 }
 
 void check_measured(const std::vector<std::string>& columns, const Scenario& scenario, const std::string& where) {

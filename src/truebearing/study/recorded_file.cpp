@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "truebearing/core/angle.hpp"
+#include "truebearing/array/recorded_array.hpp"
 #include "truebearing/core/error.hpp"
 #include "truebearing/recording/recording_csv.hpp"
 #include "truebearing/recording/snapshot_log.hpp"
@@ -126,6 +127,8 @@ void RecordedFile::open() const {
     note_ = fmt::format("{}: targets: {}; {} intervals, {} missing, {} repeated ones dropped; every run replays them",
                         file_.string(), recording.truth.size(), recording.measurements.size(), recording.counts.missing,
                         recording.counts.repeated);
+    if (const std::string note = array_of(recording).note(); !note.empty())
+      note_ += fmt::format("\n{}: {}", file_.string(), note);
     scenario_ = std::make_unique<RecordedScenario>(std::move(recording));
     return;
   }

@@ -47,6 +47,7 @@ std::span<const StepRecord> SubspaceAngleTracker::step(const Measurement& measur
   if (filters_.empty()) {
     if (!usable || !begin(measurement.time_s)) return {};
     used_time_s_ = measurement.time_s;
+    known_ = filters_;
     return publish(measurement, 0.0, false);
   }
   if (usable && interval_.sensors() != orthogonal_.basis().rows()) {  // another array than the subspace is of
@@ -208,7 +209,7 @@ std::span<const StepRecord> SubspaceAngleTracker::publish(const Measurement& mea
   const LineArray array{interval_.sensors(), interval_.spacing_wavelengths()};
   const double lag_s = options_.lag_intervals * interval_.interval_s();
   const std::size_t N = filters_.size();
-  const bool begins = dt_s == 0.0 && !usable;
+  const bool begins = N > 0 && records_.front().x.size() == 0;  // nothing was published of these yet
 
   for (std::size_t n = 0; n < N; ++n) {  // step 2, equations (16) and (17)
     predicted_[n] = filters_[n];
@@ -258,15 +259,16 @@ std::span<const StepRecord> SubspaceAngleTracker::publish(const Measurement& mea
       if (record.status == StepStatus::failed) ++guard_.counts.failed;
       filters_[n] = updated;
     }
-    if (!is_in_sector(updated.x(), updated.P()) && record.x.size() > 0) {  // what is known of it is what was known then
-      record.status = StepStatus::failed;
-      record.prediction = Prediction{record.x, record.P};
-      record.innovation.reset();
-      record.gain.reset();
-      continue;
-    }
-    record.x = updated.x();
-    record.P = updated.P();
+    const bool is_inside = begins || is_in_sector(updated.x(), updated.P());
+    if (is_inside && usable) known_[n] = updated;
+    const Filter& published = is_inside ? updated : known_[n];
+    record.x = published.x();
+    record.P = published.P();
+    if (is_inside) continue;
+    record.status = StepStatus::failed;
+    record.prediction = Prediction{record.x, record.P};
+    record.innovation.reset();
+    record.gain.reset();
   }
   find_neighbours(array, records_,
                   [&](std::size_t i, std::size_t j) { return records_[i].P(0, 0) + records_[j].P(0, 0); });

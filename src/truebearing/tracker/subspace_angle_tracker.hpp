@@ -87,7 +87,8 @@ class SubspaceAngleTracker final : public Tracker {
   Interval interval_;
   std::optional<Start> first_;
   std::vector<Filter> filters_;
-  int first_track_ = 0;  // its number
+  std::vector<Filter> known_;  // the last of them that was inside the sector
+  int first_track_ = 0;        // its number
   std::vector<Filter> predicted_;
   double used_time_s_ = 0.0;
 

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
@@ -188,16 +189,14 @@ std::vector<std::filesystem::path> matching_files(const std::filesystem::path& p
 std::string read_text_file(const std::filesystem::path& path, std::size_t max_bytes) {
   const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (file.get() < 0) throw system_error(path, "opened", errno);
-  constexpr std::size_t kChunkBytes = std::size_t{1} << 16;
+  std::array<char, 16384> chunk;  // most files fit
   std::string text;
   for (;;) {
-    const std::size_t size = text.size();
-    text.resize(size + kChunkBytes);
-    const ssize_t count = ::read(file.get(), text.data() + size, kChunkBytes);
-    const int code = errno;
-    text.resize(size + (count > 0 ? static_cast<std::size_t>(count) : 0));
+    const ssize_t count = ::read(file.get(), chunk.data(), chunk.size());
     if (count == 0) return text;
-    if (count < 0 && code != EINTR) throw system_error(path, "read", code);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) throw system_error(path, "read", errno);
+    text.append(chunk.data(), static_cast<std::size_t>(count));
     if (text.size() > max_bytes)
       throw InputError(path.string(), "is too large", fmt::format("at most {} bytes", max_bytes));
   }

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <GeographicLib/Geocentric.hpp>
 #include <GeographicLib/LocalCartesian.hpp>
 #include <GeographicLib/Math.hpp>
 #include <limits>
@@ -17,33 +16,12 @@
 #include "truebearing/core/constants.hpp"
 #include "truebearing/core/error.hpp"
 #include "truebearing/core/printable.hpp"
+#include "truebearing/recording/geographic_fixes.hpp"
 #include "truebearing/recording/time_column.hpp"
 #include "truebearing/recording/velocity_truth.hpp"
 
 namespace truebearing {
 namespace {
-
-struct Fix {
-  double time_s;
-  double latitude_deg;  // NaN, both, where there is none
-  double longitude_deg;
-  Eigen::Vector2d velocity_mps{kNaN, kNaN};  // East, North, as the target itself said
-
-  bool is_missing() const { return std::isnan(latitude_deg); }
-  bool operator==(const Fix& other) const {
-    return time_s == other.time_s && ((is_missing() && other.is_missing()) ||
-                                      (latitude_deg == other.latitude_deg && longitude_deg == other.longitude_deg));
-  }
-};
-
-struct Target {
-  std::string name;
-  std::vector<Fix> fixes;
-  double latest_s = -std::numeric_limits<double>::infinity();
-  int repeated = 0;
-  int glitches = 0;
-  int wrong_velocities = 0;
-};
 
 struct FixColumns {
   TimeColumn time;
@@ -105,18 +83,18 @@ Eigen::Vector2d read_velocity(const CsvReader& csv, const FixColumns& columns, s
   return {kNaN, kNaN};
 }
 
-Fix read_fix(const CsvReader& csv, FixColumns& columns, std::size_t& not_available) {
+GeographicFix read_fix(const CsvReader& csv, FixColumns& columns, std::size_t& not_available) {
   constexpr AngleRange kLatitude{-90.0, 90.0, 91.0}, kLongitude{-180.0, 360.0, 181.0};  // of ITU-R M.1371
   bool has_no_position = false;
-  Fix fix{columns.time.read(csv), read_angle(csv, columns.latitude, kLatitude, has_no_position),
-          read_angle(csv, columns.longitude, kLongitude, has_no_position)};
+  GeographicFix fix{columns.time.read(csv), read_angle(csv, columns.latitude, kLatitude, has_no_position),
+                    read_angle(csv, columns.longitude, kLongitude, has_no_position)};
   not_available += has_no_position;
   if (columns.speed) fix.velocity_mps = read_velocity(csv, columns, not_available);
   if (std::isnan(fix.latitude_deg) || std::isnan(fix.longitude_deg)) fix.latitude_deg = fix.longitude_deg = kNaN;
   return fix;
 }
 
-std::string names_of(const std::vector<Target>& targets) {
+std::string names_of(const std::vector<GeographicTarget>& targets) {
   constexpr std::size_t kMostNames = 12;
   std::string list;
   for (std::size_t i = 0; i < std::min(targets.size(), kMostNames); ++i)
@@ -127,15 +105,15 @@ std::string names_of(const std::vector<Target>& targets) {
 // Targets in the order of their first rows, and where each is found by its name.
 class Targets {
  public:
-  Target& of(const std::string& name) {
+  GeographicTarget& of(const std::string& name) {
     const auto [place, is_new] = places_.try_emplace(name, targets_.size());
-    if (is_new) targets_.push_back(Target{name, {}});
+    if (is_new) targets_.push_back(GeographicTarget{name, {}});
     return targets_[place->second];
   }
-  std::vector<Target> all() && { return std::move(targets_); }
+  std::vector<GeographicTarget> all() && { return std::move(targets_); }
 
  private:
-  std::vector<Target> targets_;
+  std::vector<GeographicTarget> targets_;
   std::unordered_map<std::string, std::size_t> places_;
 };
 
@@ -146,16 +124,7 @@ std::string read_name(const CsvReader& csv, const FixColumns& columns) {
   return name;
 }
 
-// Puts late fixes in order and drops those that say what the one before says.
-void put_in_order(Target& target) {
-  std::vector<Fix>& fixes = target.fixes;
-  std::stable_sort(fixes.begin(), fixes.end(), [](const Fix& a, const Fix& b) { return a.time_s < b.time_s; });
-  const auto end = std::unique(fixes.begin(), fixes.end());
-  target.repeated += static_cast<int>(fixes.end() - end);
-  fixes.erase(end, fixes.end());
-}
-
-std::vector<Target> read_targets(CsvReader& csv, const RecordingOptions& options, GeographicTracks& tracks) {
+std::vector<GeographicTarget> read_targets(CsvReader& csv, const RecordingOptions& options, GeographicTracks& tracks) {
   FixColumns columns = find_columns(csv, options);
   if (!options.target.empty() && !columns.target)
     throw InputError(csv.name(), "has no column that tells targets apart",
@@ -163,9 +132,9 @@ std::vector<Target> read_targets(CsvReader& csv, const RecordingOptions& options
   Targets targets;
   while (csv.next()) {
     const std::string name = read_name(csv, columns);
-    Target& target = targets.of(name);
+    GeographicTarget& target = targets.of(name);
     if (!options.target.empty() && name != options.target) continue;
-    const Fix fix = read_fix(csv, columns, tracks.not_available);
+    const GeographicFix fix = read_fix(csv, columns, tracks.not_available);
     if (fix.time_s < target.latest_s - options.sort_window_s)
       throw csv.error(
           columns.time.index(), fmt::format("is {}, earlier than {} before it", fix.time_s, target.latest_s),
@@ -176,100 +145,22 @@ std::vector<Target> read_targets(CsvReader& csv, const RecordingOptions& options
     target.latest_s = std::max(target.latest_s, fix.time_s);
     target.fixes.push_back(fix);
   }
-  std::vector<Target> all = std::move(targets).all();
-  const auto is_wanted = [&](const Target& target) { return target.name == options.target; };
+  std::vector<GeographicTarget> all = std::move(targets).all();
+  const auto is_wanted = [&](const GeographicTarget& target) { return target.name == options.target; };
   if (options.target.empty()) return all;
   if (std::none_of(all.begin(), all.end(), is_wanted))
     throw InputError(csv.name(), "has no track " + as_shown(options.target), "one of " + names_of(all));
-  std::erase_if(all, [&](const Target& target) { return !is_wanted(target); });
+  std::erase_if(all, [&](const GeographicTarget& target) { return !is_wanted(target); });
   return all;
-}
-
-// Receivers without a fix write 0, 0. A target that was near there may well have been there too.
-std::size_t remove_null_island(Target& target) {
-  constexpr double kNear_deg = 1.0;
-  const auto is_origin = [](const Fix& fix) { return fix.latitude_deg == 0.0 && fix.longitude_deg == 0.0; };
-  const auto is_near = [&](const Fix& fix) {
-    return std::abs(fix.latitude_deg) < kNear_deg && std::abs(fix.longitude_deg) < kNear_deg && !is_origin(fix);
-  };
-  if (std::any_of(target.fixes.begin(), target.fixes.end(), is_near)) return 0;
-  std::size_t removed = 0;
-  for (Fix& fix : target.fixes) {
-    if (!is_origin(fix)) continue;
-    fix.latitude_deg = fix.longitude_deg = kNaN;
-    ++removed;
-  }
-  return removed;
-}
-
-Eigen::Vector3d geocentric(const Fix& fix) {
-  Eigen::Vector3d position_m;
-  GeographicLib::Geocentric::WGS84().Forward(fix.latitude_deg, fix.longitude_deg, 0.0, position_m.x(), position_m.y(),
-                                             position_m.z());
-  return position_m;
-}
-
-// Fixes of one target that it could have reached one from another.
-struct Chain {
-  Eigen::Vector3d position_m;  // of the last one
-  double since_s;              // when it was first there: receivers repeat a position until they have another
-  int length = 0;
-};
-
-// Takes out the fixes that no target could have reached in time: all but those of the longest chain, so that a wrong
-// position, be it the first, does not lock out the good ones. A fix goes on with the longest chain that it could.
-void remove_glitches(Target& target, double max_speed_mps) {
-  constexpr std::size_t kMostChains = 8;  // the shortest gives way
-  const auto is_shorter = [](const auto& a, const auto& b) { return a.second.length < b.second.length; };
-  std::vector<std::pair<int, Chain>> chains;  // with their numbers
-  std::vector<int> chain_of(target.fixes.size(), -1);
-  int begun = 0;
-  for (std::size_t k = 0; k < target.fixes.size(); ++k) {
-    const Fix& fix = target.fixes[k];
-    if (fix.is_missing()) continue;
-    const Eigen::Vector3d position_m = geocentric(fix);
-    std::pair<int, Chain>* longest = nullptr;
-    for (auto& chain : chains) {
-      const double reach_m = max_speed_mps * (fix.time_s - chain.second.since_s);
-      const bool is_reached = (position_m - chain.second.position_m).norm() <= reach_m;
-      if (is_reached && (!longest || is_shorter(*longest, chain))) longest = &chain;
-    }
-    if (!longest) {
-      if (chains.size() == kMostChains) chains.erase(std::min_element(chains.begin(), chains.end(), is_shorter));
-      longest = &chains.emplace_back(begun++, Chain{position_m, fix.time_s});
-    }
-    Chain& chain = longest->second;
-    if (position_m != chain.position_m) chain.since_s = fix.time_s;
-    chain.position_m = position_m;
-    ++chain.length;
-    chain_of[k] = longest->first;
-  }
-  if (chains.empty()) return;
-  const int kept = std::max_element(chains.begin(), chains.end(), is_shorter)->first;
-  for (std::size_t k = 0; k < target.fixes.size(); ++k) {
-    Fix& fix = target.fixes[k];
-    if (fix.is_missing() || chain_of[k] == kept) continue;
-    fix.latitude_deg = fix.longitude_deg = kNaN;
-    ++target.glitches;
-  }
-}
-
-// Takes out the velocities that no target has.
-void remove_wrong_velocities(Target& target, double max_speed_mps) {
-  for (Fix& fix : target.fixes) {
-    if (!(fix.velocity_mps.norm() > max_speed_mps)) continue;
-    fix.velocity_mps.setConstant(kNaN);
-    ++target.wrong_velocities;
-  }
 }
 
 // The frame whose origin is in the middle of the target's area. Longitudes are taken relative to one of them, so that
 // 180 degrees is a longitude like any other.
-GeographicLib::LocalCartesian local_frame(const Target& target) {
-  const auto first =
-      std::find_if(target.fixes.begin(), target.fixes.end(), [](const Fix& fix) { return !fix.is_missing(); });
+GeographicLib::LocalCartesian local_frame(const GeographicTarget& target) {
+  const auto first = std::find_if(target.fixes.begin(), target.fixes.end(),
+                                  [](const GeographicFix& fix) { return !fix.is_missing(); });
   double south = first->latitude_deg, north = first->latitude_deg, west = 0.0, east = 0.0;
-  for (const Fix& fix : target.fixes) {
+  for (const GeographicFix& fix : target.fixes) {
     if (fix.is_missing()) continue;
     const double turn_deg = GeographicLib::Math::AngDiff(first->longitude_deg, fix.longitude_deg);
     south = std::min(south, fix.latitude_deg);
@@ -281,7 +172,7 @@ GeographicLib::LocalCartesian local_frame(const Target& target) {
 }
 
 // Indices of the fixes at which a stretch of the track begins: the first, and the first after each gap.
-std::vector<std::size_t> stretches(const Target& target, double max_gap_periods) {
+std::vector<std::size_t> stretches(const GeographicTarget& target, double max_gap_periods) {
   std::vector<std::size_t> usable;
   for (std::size_t k = 0; k < target.fixes.size(); ++k)
     if (!target.fixes[k].is_missing()) usable.push_back(k);
@@ -299,9 +190,10 @@ std::vector<std::size_t> stretches(const Target& target, double max_gap_periods)
 
 // Velocities stretch by stretch, then NaN where nothing is to be scored.
 // Returns the highest speed, whether it is scored or not.
-double complete_truth(const Target& target, const GeographicTrackOptions& options, std::vector<BoundedVector>& x) {
+double complete_truth(const GeographicTarget& target, const GeographicTrackOptions& options,
+                      std::vector<BoundedVector>& x) {
   std::vector<double> time_s;
-  for (const Fix& fix : target.fixes) time_s.push_back(fix.time_s);
+  for (const GeographicFix& fix : target.fixes) time_s.push_back(fix.time_s);
   std::vector<std::size_t> starts = stretches(target, options.max_gap_periods);
   starts.push_back(x.size());
   for (std::size_t i = 0; i + 1 < starts.size(); ++i) {
@@ -322,13 +214,13 @@ double complete_truth(const Target& target, const GeographicTrackOptions& option
   return fastest_mps;
 }
 
-Recording make_recording(const Target& target, const GeographicTrackOptions& options, double& fastest_mps) {
+Recording make_recording(const GeographicTarget& target, const GeographicTrackOptions& options, double& fastest_mps) {
   const GeographicLib::LocalCartesian frame = local_frame(target);
   Recording recording;
   recording.measured = {"east_m", "north_m"};
   recording.truth_space = &plane_space();
   recording.truth.resize(1);
-  for (const Fix& fix : target.fixes) {
+  for (const GeographicFix& fix : target.fixes) {
     Measurement measurement;
     measurement.time_s = fix.time_s;
     measurement.z = BoundedVector::Constant(2, kNaN);
@@ -367,15 +259,15 @@ GeographicTracks read_geographic_tracks(CsvReader csv, const GeographicTrackOpti
   const FixColumns columns = find_columns(csv, recording);
   believed.recorded_velocity &= columns.speed.has_value();
   std::size_t rows = 0, glitches = 0;
-  for (Target& target : read_targets(csv, recording, tracks)) {
+  for (GeographicTarget& target : read_targets(csv, recording, tracks)) {
     put_in_order(target);
     tracks.null_island += remove_null_island(target);
     if (std::isfinite(options.max_speed_mps)) remove_glitches(target, options.max_speed_mps);
     remove_wrong_velocities(target, options.max_speed_mps);
     rows += target.fixes.size();
     glitches += static_cast<std::size_t>(target.glitches);
-    const auto usable =
-        std::count_if(target.fixes.begin(), target.fixes.end(), [](const Fix& fix) { return !fix.is_missing(); });
+    const auto usable = std::count_if(target.fixes.begin(), target.fixes.end(),
+                                      [](const GeographicFix& fix) { return !fix.is_missing(); });
     if (usable < kFewestRows) {
       ++tracks.left_out;
       continue;

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/fuzz/readers.hpp"
 
+#include <cerrno>
+#include <fcntl.h>
+#include <filesystem>
 #include <sstream>
 #include <string>
+#include <system_error>
+#include <unistd.h>
 
+#include "tests/fuzz/estimators.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "truebearing/core/error.hpp"
 #include "truebearing/correction/model_file.hpp"
@@ -19,10 +25,35 @@
 namespace truebearing::testing {
 namespace {
 
+// One file, open for as long as the process lives, in memory where the system has room for such: thousands are read in
+// a second.
+class HostileFile {
+ public:
+  HostileFile()
+      : folder_(std::filesystem::is_directory("/dev/shm") ? "/dev/shm" : std::filesystem::temp_directory_path()),
+        path_(folder_.write("hostile", {})),
+        file_(::open(path_.c_str(), O_WRONLY | O_CLOEXEC)) {}
+  HostileFile(const HostileFile&) = delete;
+  HostileFile& operator=(const HostileFile&) = delete;
+  ~HostileFile() { ::close(file_); }
+
+  const std::filesystem::path& write(const std::string& text) const {
+    const auto size = static_cast<ssize_t>(text.size());
+    if (::ftruncate(file_, 0) != 0 || ::pwrite(file_, text.data(), text.size(), 0) != size)
+      throw std::filesystem::filesystem_error("no file for a reader", path_, {errno, std::generic_category()});
+    return path_;
+  }
+
+ private:
+  TemporaryFolder folder_;
+  std::filesystem::path path_;
+  int file_;
+};
+
 template <typename Read>
 void read_file(const std::string& text, const Read& read) {
-  const TemporaryFolder folder;
-  read(folder.write("hostile", text));
+  static const HostileFile file;
+  read(file.write(text));
 }
 
 void read(std::uint8_t reader, const std::string& text) {
@@ -61,6 +92,7 @@ void read(std::uint8_t reader, const std::string& text) {
 
 bool read_hostile(std::span<const std::uint8_t> bytes) {
   if (bytes.empty()) return false;
+  if (bytes.front() == 'e') return drive_estimator(bytes.subspan(1));
   try {
     read(bytes.front(), std::string(bytes.begin() + 1, bytes.end()));
   } catch (const InputError&) {

@@ -6,6 +6,7 @@
 
 #include "truebearing/core/chi_square.hpp"
 #include "truebearing/core/linear_algebra.hpp"
+#include "truebearing/tma/outlier_deletion.hpp"
 #include "truebearing/tma/velocity_change.hpp"
 
 namespace truebearing {
@@ -17,6 +18,15 @@ constexpr std::size_t kFewestInARow = 4;  // frequencies: fewer are strays
 double sigmas_apart(const DopplerWindow& frequencies, std::size_t i, std::size_t j) {
   return std::abs(frequencies.frequency_hz(i) - frequencies.frequency_hz(j)) /
          std::hypot(frequencies.sigma_hz(i), frequencies.sigma_hz(j));
+}
+
+// By the bearings alone: levels that are not yet found would be taken for misfits of the bearings.
+std::vector<Outlier> outliers_among(TargetMotionBatch& batch, const BearingWindow& window) {
+  constexpr std::size_t kFewest = 5;
+  if (window.size() < kFewest) return {};
+  const BatchEstimate estimate = batch.solve(window);
+  if (!estimate.found) return {};
+  return OutlierDeletion(window, nullptr).find(estimate);
 }
 
 }  // namespace
@@ -79,6 +89,17 @@ void list_runs(const DopplerWindow& frequencies, std::vector<LevelRun>& runs) {
 FrequencyChangeBatch::FrequencyChangeBatch(FrequencyChangeOptions options)
     : options_(options), gamma_(normal_quantile(1.0 - 0.5 * options.false_alarm_probability)) {}
 
+double FrequencyChangeBatch::scan_threshold(std::size_t frequencies) const {
+  constexpr double kIntervals = 10.0;  // of each frequency
+  constexpr double kWays = 3.0;        // to a false change: an edge, a stray that goes on, the scan
+  if (!options_.level) return options_.scan_threshold;
+  return chi_square_quantile(1.0 - *options_.level / (kWays * kIntervals * static_cast<double>(frequencies)), 1.0);
+}
+
+double FrequencyChangeBatch::alike(std::size_t frequencies) const {
+  return options_.level ? scan_threshold(frequencies) : options_.alike;
+}
+
 BatchEstimate FrequencyChangeBatch::solve(TargetMotionBatch& batch, const BearingWindow& window,
                                           DopplerWindow& frequencies, const std::optional<BatchPrior>& prior,
                                           const Eigen::Vector4d* warm) {
@@ -92,10 +113,11 @@ BatchEstimate FrequencyChangeBatch::solve(TargetMotionBatch& batch, const Bearin
   used_ = options_.handling != Handling::bearings_only || frequencies.levels() <= 1;
   BatchEstimate estimate = batch.solve(window, prior, warm, used_ ? &frequencies : nullptr);
   if (estimate.found && options_.handling == Handling::levels) {
-    const bool steady = frequencies.levels() == 1 && scan(frequencies, estimate).statistic <= options_.scan_threshold;
+    const bool steady =
+        frequencies.levels() == 1 && scan(frequencies, estimate).statistic <= scan_threshold(frequencies.size());
     if (!steady) {
       // Bearings that are outliers pull at the state, and the frequencies then seem to disagree with it.
-      const std::span<const Outlier> outliers = find_outliers_(window, estimate);
+      const std::vector<Outlier> outliers = outliers_among(batch, window);
       if (outliers.empty())
         find_levels(batch, window, frequencies, prior, estimate);
       else
@@ -121,7 +143,7 @@ void FrequencyChangeBatch::find_levels(TargetMotionBatch& batch, const BearingWi
   if (set_strays_apart(frequencies, estimate)) refine();
   for (int splits = 0; splits < options_.most_splits; ++splits) {
     const IntervalScore interval = scan(frequencies, estimate);
-    if (interval.statistic <= options_.scan_threshold) break;
+    if (interval.statistic <= scan_threshold(frequencies.size())) break;
     const bool long_enough = interval.end - interval.begin >= kFewestInARow;
     if (options_.weigh_manoeuvres && long_enough && manoeuvre_explains_more(window, frequencies, estimate, interval))
       break;
@@ -154,7 +176,7 @@ bool FrequencyChangeBatch::merge(TargetMotionBatch& batch, const BearingWindow& 
       ranked_[static_cast<std::size_t>(frequencies.level(i))].first = i;
     std::sort(ranked_.begin(), ranked_.end(),
               [](const Ranked& a, const Ranked& b) { return a.frequency_hz < b.frequency_hz; });
-    double least = options_.alike;
+    double least = alike(frequencies.size());
     const Ranked *one = nullptr, *other = nullptr;
     for (std::size_t k = 1; k < ranked_.size(); ++k) {
       const SourceFrequency& a = sources_[static_cast<std::size_t>(ranked_[k - 1].level)];
@@ -175,8 +197,13 @@ bool FrequencyChangeBatch::merge(TargetMotionBatch& batch, const BearingWindow& 
     merged_ = level_;
     std::replace(merged_.begin(), merged_.end(), other->level, one->level);
     frequencies.set_levels(merged_);
-    const BatchEstimate refined = batch.refine(estimate.x, window, prior, &frequencies);
-    if (refined.found && 2.0 * (refined.objective - estimate.objective) < options_.alike) {
+    const auto are_one = [&](const BatchEstimate& joint) {
+      return joint.found && 2.0 * (joint.objective - estimate.objective) < alike(frequencies.size());
+    };
+    BatchEstimate refined = batch.refine(estimate.x, window, prior, &frequencies);
+    // Where the range is open the way from one minimum to the other is long: from all starts before it is denied.
+    if (!are_one(refined)) refined = batch.solve(window, prior, &estimate.x, &frequencies);
+    if (are_one(refined)) {
       estimate = refined;
       merged = true;
     } else {

@@ -11,6 +11,7 @@
 // a small jump of its tone, and is taken for one.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -30,11 +31,27 @@ struct FrequencyChangeOptions {
   Handling handling = Handling::levels;
   double false_alarm_probability = 1.5e-6;  ///< of the edge detector, per pair of frequencies
   double scan_threshold = 25.0;             ///< of s^2 / V, over all intervals
-  double alike = 9.0;                       ///< likelihood ratio, 2 ln, below which two levels are one
-  int most_splits = 8;                      ///< by the scan
+  /// Likelihood ratio, 2 ln, below which two levels are one: three standard deviations, for trackers, which see every
+  /// jump anew with each solution and follow small ones.
+  double alike = 9.0;
+  int most_splits = 8;  ///< by the scan
   /// Before the scan splits a level: is it the target that changed its velocity (velocity_change.hpp)? Where that
   /// explains more, the tone is left in peace. Costs tens of milliseconds where there is something to split.
   bool weigh_manoeuvres = false;
+
+  /// Where given, in place of both thresholds: how often a change is found in a window of one tone. A third of it is
+  /// the scan's, whose n^2 / 2 intervals overlap: they are as good as 10 n that do not (simulated, n from 43 to 900).
+  std::optional<double> level;
+
+  /// For one answer about a whole log, where a change that was none is believed: no level is kept that the scan would
+  /// not have told apart (among many pieces some differ by three standard deviations by chance), and manoeuvres are
+  /// weighed.
+  static FrequencyChangeOptions of_a_log() {
+    FrequencyChangeOptions options;
+    options.level = 1e-3;
+    options.weigh_manoeuvres = true;
+    return options;
+  }
 };
 
 /// From this frequency on the source has another f0.
@@ -85,6 +102,10 @@ class FrequencyChangeBatch {
   std::span<const FrequencyChange> changes() const { return changes_; }
   /// The level that the source has at the end.
   int last_level() const { return last_level_; }
+
+  /// Of the score scan, and of the likelihood ratio of two levels, in a window of so many frequencies.
+  double scan_threshold(std::size_t frequencies) const;
+  double alike(std::size_t frequencies) const;
 
   /// The score scan at an estimate that was made from these levels.
   IntervalScore scan(const DopplerWindow& frequencies, const BatchEstimate& estimate);

@@ -98,15 +98,30 @@ std::vector<double> MotionRows::leverages(const Eigen::Matrix4d& P) const {
   return leverages;
 }
 
-Eigen::Matrix4d inverse_of_what_is_known(const Eigen::Matrix4d& information) {
+Eigen::Vector4d polar_of(const BatchEstimate& estimate, const ModifiedPolar& polar) {
+  Eigen::Vector4d x = estimate.x;
+  x.head<2>() -= (estimate.time_s - polar.origin_s()) * x.tail<2>();
+  return polar.from_cartesian(x);
+}
+
+template <int N>
+Eigen::Matrix<double, N, N> root_of_inverse(const Eigen::Matrix<double, N, N>& information) {
   constexpr double kLeast = 1e-11;
-  const Eigen::Vector4d scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const SymmetricModes<4> modes = symmetric_modes<4>(scale.asDiagonal() * information * scale.asDiagonal());
-  Eigen::Vector4d inverse = Eigen::Vector4d::Zero();
-  for (int i = 0; i < 4; ++i)
+  const Eigen::Matrix<double, N, 1> scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  constexpr int kSize = N > 4 ? Eigen::Dynamic : N;  // of modes that are compiled
+  const Eigen::Matrix<double, kSize, kSize> scaled = scale.asDiagonal() * information * scale.asDiagonal();
+  const SymmetricModes<kSize> modes = symmetric_modes<kSize>(scaled);
+  Eigen::Matrix<double, N, 1> inverse = Eigen::Matrix<double, N, 1>::Zero();
+  for (int i = 0; i < N; ++i)
     if (modes.values[i] > kLeast) inverse[i] = 1.0 / modes.values[i];
-  const Eigen::Matrix4d half = scale.asDiagonal() * modes.vectors * inverse.cwiseSqrt().asDiagonal();
-  return half * half.transpose();
+  return scale.asDiagonal() * modes.vectors * inverse.cwiseSqrt().asDiagonal();
+}
+template Eigen::Matrix<double, 4, 4> root_of_inverse<4>(const Eigen::Matrix<double, 4, 4>&);
+template Eigen::Matrix<double, 6, 6> root_of_inverse<6>(const Eigen::Matrix<double, 6, 6>&);
+
+Eigen::Matrix4d inverse_of_what_is_known(const Eigen::Matrix4d& information) {
+  const Eigen::Matrix4d root = root_of_inverse<4>(information);
+  return root * root.transpose();
 }
 
 }  // namespace truebearing

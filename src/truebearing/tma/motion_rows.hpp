@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "truebearing/tma/batch_estimate.hpp"
 #include "truebearing/tma/bearing_window.hpp"
 #include "truebearing/tma/doppler_window.hpp"
 #include "truebearing/tma/modified_polar.hpp"
@@ -87,8 +88,14 @@ class MotionRows {
   std::vector<Level> level_;
 };
 
-/// Inverse of an information matrix, without the directions of which it says nothing but rounding (less than a part in
+/// y of an estimate.
+Eigen::Vector4d polar_of(const BatchEstimate& estimate, const ModifiedPolar& polar);
+
+/// Root L of the inverse L L' of an information matrix of four or six, without the directions of which it says nothing but rounding (less than a part in
 /// 1e11 of what its diagonal says): nothing is taken along them.
+template <int N>
+Eigen::Matrix<double, N, N> root_of_inverse(const Eigen::Matrix<double, N, N>& information);
+/// The inverse itself.
 Eigen::Matrix4d inverse_of_what_is_known(const Eigen::Matrix4d& information);
 
 }  // namespace truebearing

@@ -4,6 +4,7 @@
 // target that manoeuvred, say) nor a few outliers among the eight hide it or make one.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,7 +15,10 @@ namespace truebearing {
 
 struct Outlier {
   std::size_t at;  ///< its place
-  double sigmas;   ///< off its neighbours; positive where it is too large
+  double sigmas;   ///< off its neighbours, or off what the others say of it; positive where it is too large
+  /// Another that may be the outlier in its stead: by a likelihood ratio (2 ln) that chance passes once in a hundred
+  /// times they cannot be told apart.
+  std::optional<std::size_t> or_else{};
 };
 
 /// Allocates only where there are more residuals than ever before. What it returns holds until the next call.

@@ -7,6 +7,7 @@
 #include "truebearing/core/chi_square.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
 #include "truebearing/tma/motion_rows.hpp"
+#include "truebearing/tma/outlier_deletion.hpp"
 #include "truebearing/tma/target_motion_batch.hpp"
 
 namespace truebearing {
@@ -35,23 +36,14 @@ double sum_of_squares(const BearingWindow& window, const BatchEstimate& estimate
   return sum;
 }
 
-// Outliers pull at the estimate by which they are known, so both in turn until they agree.
+// The least squares of the bearings that are no outliers.
 BearingWindow leave_out_outliers(const BearingWindow& window, const BatchEstimate& estimate,
                                  const DopplerWindow* frequencies, ResidualChecks& checks) {
-  constexpr int kMostRounds = 6;
-  TargetMotionBatch batch;
-  OutlierSearch find_outliers;
-  BearingWindow rest = window;
+  checks.outliers = OutlierDeletion(window, frequencies).find(estimate);
+  BearingWindow rest = window.without(places(checks.outliers));
   checks.least_squares = estimate;
-  for (int round = 0; round < kMostRounds; ++round) {
-    const BatchEstimate better = batch.solve(rest, std::nullopt, &checks.least_squares.x, frequencies);
-    if (better.found) checks.least_squares = better;
-    const std::span<const Outlier> outliers = find_outliers(window, checks.least_squares);
-    const bool known = places(outliers) == places(checks.outliers);
-    checks.outliers.assign(outliers.begin(), outliers.end());
-    if (known) break;
-    rest = window.without(places(checks.outliers));
-  }
+  const BatchEstimate better = TargetMotionBatch().solve(rest, std::nullopt, &estimate.x, frequencies);
+  if (better.found) checks.least_squares = better;
   return rest;
 }
 
@@ -80,7 +72,6 @@ double noise_variance(double chi_square, int degrees_of_freedom) {
 void look_for_a_change(VelocityChangeScan& scan, ResidualChecks& checks) {
   constexpr double kWorthALook = 0.05;  // the chance that a steady target is fitted with a change at all
   if (scan.times() == 0) return;
-  const double times = static_cast<double>(scan.times());
   const VelocityChangeScan::Score largest = scan.largest_score();
   const double chi_square = 2.0 * checks.least_squares.cost;
   const auto in_units_of_noise = [&](double statistic) {
@@ -88,12 +79,12 @@ void look_for_a_change(VelocityChangeScan& scan, ResidualChecks& checks) {
   };
   checks.manoeuvre = in_units_of_noise(largest.statistic);
   checks.manoeuvre_s = largest.time_s;
-  if (!checks.rest.too_large && largest.statistic < -2.0 * std::log(kWorthALook / times)) return;
+  if (!checks.rest.too_large && largest.statistic < scan.threshold(kWorthALook)) return;
   const VelocityChange change = scan.fit();
   if (!std::isfinite(change.cost)) return;
   checks.manoeuvre = in_units_of_noise(chi_square - 2.0 * change.cost);
   checks.manoeuvre_s = change.time_s;
-  checks.manoeuvred = checks.manoeuvre > -2.0 * std::log(kByChance / times);
+  checks.manoeuvred = checks.manoeuvre > scan.threshold(kByChance);
   if (checks.manoeuvred) checks.change = change;
 }
 
@@ -120,10 +111,8 @@ void look_for_a_bias(const MotionRows& rows, const BearingWindow& window, const 
   const double information = equations.A(4, 4) - coupling.dot(taken);
   const BatchEstimate& estimate = checks.least_squares;
   const ModifiedPolar& polar = rows.polar();
-  Eigen::Vector4d x = estimate.x;
-  x.head<2>() -= (estimate.time_s - polar.origin_s()) * x.tail<2>();
   checks.bias.moves = ConstantVelocity<2, ContinuousWhiteNoise>{}.F(estimate.time_s - polar.origin_s()) *
-                      polar.jacobian(polar.from_cartesian(x)) * taken;
+                      polar.jacobian(polar_of(estimate, polar)) * taken;
   if (!(information > 1e-9 * equations.A(4, 4))) return;
   checks.bias.sigma_rad = 1.0 / std::sqrt(information);
   checks.bias.bias_rad = (equations.gradient(4) - taken.dot(equations.gradient.head<4>())) / information;

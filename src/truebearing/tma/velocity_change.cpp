@@ -31,13 +31,19 @@ double score(const NormalEquations<6>& equations) {
                         GG - GJ * P * GJ.transpose(), GG.trace());
 }
 
-Eigen::Vector4d polar_of(const BatchEstimate& estimate, const ModifiedPolar& polar) {
-  Eigen::Vector4d x = estimate.x;
-  x.head<2>() -= (estimate.time_s - polar.origin_s()) * x.tail<2>();
-  return polar.from_cartesian(x);
-}
-
 }  // namespace
+
+BatchEstimate VelocityChange::before(double at_s) const {
+  BatchEstimate steady;
+  steady.found = true;
+  steady.time_s = at_s;
+  steady.x = x;
+  // x holds at end_s.
+  steady.x.head<2>() += (at_s - end_s) * x.tail<2>() + (time_s - at_s) * change_mps;
+  steady.x.tail<2>() -= change_mps;
+  steady.cost = cost;
+  return steady;
+}
 
 VelocityChangeScan::VelocityChangeScan(const BearingWindow& bearings, const DopplerWindow* frequencies,
                                        const BatchEstimate& least_squares)
@@ -49,6 +55,10 @@ VelocityChangeScan::VelocityChangeScan(const BearingWindow& bearings, const Dopp
   if (bearings.size() < kFewest) return;
   const std::size_t step = std::max<std::size_t>(1, (bearings.size() + kMostTimes - 1) / kMostTimes);
   for (std::size_t i = kMargin; i + kMargin < bearings.size(); i += step) times_.push_back(i);
+}
+
+double VelocityChangeScan::threshold(double by_chance) const {
+  return -2.0 * std::log(by_chance / static_cast<double>(times_.size()));
 }
 
 VelocityChangeScan::Score VelocityChangeScan::largest_score() const {
@@ -136,6 +146,7 @@ VelocityChange VelocityChangeScan::conclude(const Fit& best) {
           .finished();
   VelocityChange change;
   change.time_s = change_s;
+  change.end_s = end_s;
   change.change_mps = dv_mps;
   change.cost = best.cost;
   change.x = F * polar.to_cartesian(y);

@@ -27,9 +27,13 @@ struct VelocityChange {
   /// With 95 % it was between these, among the times that were looked at.
   double earliest_s = 0.0, latest_s = 0.0;
   Eigen::Vector2d change_mps = Eigen::Vector2d::Zero();
-  Eigen::Vector4d x = Eigen::Vector4d::Zero();  ///< [east, north, v_east, v_north] at the last bearing
+  double end_s = 0.0;                           ///< of the last bearing
+  Eigen::Vector4d x = Eigen::Vector4d::Zero();  ///< [east, north, v_east, v_north] there
   Eigen::Matrix4d P = Eigen::Matrix4d::Zero();
   double cost = 0.0;  ///< 1/2 the sum of squares that is left
+
+  /// The course and speed before it, as a state at that time; without P.
+  BatchEstimate before(double at_s) const;
 };
 
 class VelocityChangeScan {
@@ -42,6 +46,8 @@ class VelocityChangeScan {
                      const BatchEstimate& least_squares);
 
   std::size_t times() const { return times_.size(); }
+  /// The statistic that the largest over all times passes with this probability at most (Bonferroni).
+  double threshold(double by_chance) const;
   struct Score {
     double statistic = 0.0, time_s = 0.0;
   };

@@ -136,8 +136,7 @@ BatchPrior prior_of(const TmaArguments& options, const BearingWindow& window) {
 
 FrequencyChangeOptions changes_of(const TmaArguments& options) {
   using Handling = FrequencyChangeOptions::Handling;
-  // No level that the scan would not have found is kept.
-  FrequencyChangeOptions changes{.alike = 25.0, .weigh_manoeuvres = true};
+  FrequencyChangeOptions changes = FrequencyChangeOptions::of_a_log();
   if (options.frequency_changes == "segments") changes.handling = Handling::segments;
   if (options.frequency_changes == "switch") changes.handling = Handling::bearings_only;
   if (options.frequency_changes == "ignored") changes.handling = Handling::ignored;
@@ -288,8 +287,10 @@ void examine(const Windows& windows, const DopplerWindow* used, TmaAnswer& answe
   const BearingWindow& bearings = windows.bearings;
   ResidualChecks& checks = answer.residuals;
   checks = check_residuals(bearings, answer.estimate, used);
-  for (const Outlier& outlier : checks.outliers)
+  for (const Outlier& outlier : checks.outliers) {
     answer.outliers.push_back({bearings.time_s(outlier.at), windows.line[outlier.at], outlier.sigmas});
+    if (outlier.or_else) answer.outliers.back().or_line = windows.line[*outlier.or_else];
+  }
   answer.bearing_sigma_rad = root_mean_square_sigma(bearings.size(), [&](std::size_t i) { return bearings.weight(i); });
   if (used)
     answer.frequency_sigma_hz = root_mean_square_sigma(used->size(), [&](std::size_t i) { return used->weight(i); });

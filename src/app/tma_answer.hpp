@@ -30,11 +30,12 @@ struct TmaSource {
   std::vector<FrequencyChange> changes;
 };
 
-/// A measurement that does not belong to its neighbours.
+/// A measurement that does not belong to the others.
 struct TmaOutlier {
   double time_s;
-  std::size_t line;  ///< of the log
-  double sigmas;     ///< off its neighbours; of a frequency NaN
+  std::size_t line;                      ///< of the log
+  double sigmas;                         ///< off what the others say of it; of a frequency NaN
+  std::optional<std::size_t> or_line{};  ///< of another that may be the outlier in its stead
 };
 
 /// A stretch of the log by itself, before or after a manoeuvre, and what its bearings say.
@@ -113,6 +114,20 @@ struct MotionSigmas {
   MotionSigmas(const Eigen::Vector4d& x, const Eigen::Matrix4d& P, const SensorState& own_ship);
 };
 
+/// The 95 % ellipse of the position.
+struct Ellipse {
+  double semi_major_m, semi_minor_m, orientation_deg;  ///< of the major axis, from North, in [0, 180)
+
+  explicit Ellipse(const Eigen::Matrix4d& P);
+};
+
+/// Is the range known to a half of itself, with the change?
+bool range_is_known(const VelocityChange& change, const SensorState& own_ship);
+/// Of the source, where the log knows it.
+std::optional<double> true_frequency(const TmaAnswer& answer);
+
+/// With so many decimals, or where its standard deviation is smaller than they show with two figures of that.
+std::string figure(double value, double sigma, int decimals);
 /// Range, course and speed with their standard deviations, in words.
 std::string motion_with_sigmas(const Eigen::Vector4d& x, const Eigen::Matrix4d& P, const SensorState& own_ship);
 

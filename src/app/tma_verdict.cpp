@@ -33,8 +33,9 @@ std::string says_of_outliers(const TmaAnswer& answer) {
   const std::string advice = answer.is_robust ? fmt::format("--huber makes little of {}", what)
                                               : fmt::format("leave {} out or try --huber 2", what);
   if (outliers.size() == 1)
-    return fmt::format("one bearing is an outlier, {:.0f} sigma off at {} s (line {}): {}", std::abs(worst.sigmas),
-                       seconds(worst.time_s), worst.line, advice);
+    return fmt::format("one bearing is an outlier, {:.0f} sigma off at {} s (line {}{}): {}", std::abs(worst.sigmas),
+                       seconds(worst.time_s), worst.line,
+                       worst.or_line ? fmt::format(", or else line {}", *worst.or_line) : "", advice);
   return fmt::format("{} bearings are outliers ({}; the worst {:.0f} sigma off at {} s, line {}): {}", outliers.size(),
                      lines_of(outliers), std::abs(worst.sigmas), seconds(worst.time_s), worst.line, advice);
 }

@@ -82,11 +82,12 @@ inline Published published(Tracker& tracker, std::span<const Measurement> measur
   return all;
 }
 
-/// The measurement's row with nothing in it, at that time.
+/// The measurement's row with nothing in it but where the sensor was, at that time.
 inline Measurement emptied(const Measurement& measurement, double time_s) {
   Measurement empty = measurement;
   empty.time_s = time_s;
   empty.z.setConstant(kNaN);
+  empty.guess.reset();
   empty.snapshots.reset();
   return empty;
 }

@@ -32,16 +32,23 @@ struct Stream {
   }
 };
 
-/// Row k, from 1, of a log in which nothing is wrong, of a target that is nowhere in particular: a number for each
-/// component, or the noise of so many sensors of a line array.
+/// Row k, from 1, of a log in which nothing is wrong: a number for each component, of a target that is nowhere in
+/// particular; or what so many sensors of a line array hear of one target that stands still, ten times as strong as the
+/// noise.
 inline void add_tame_row(int k, Eigen::Index components, int sensors, RandomStream& random, Stream& stream) {
   constexpr int kSnapshots = 30;
   Measurement& measurement = stream.measurements.emplace_back();
   measurement.time_s = 20.0 * k;
   if (sensors > 0) {
     measurement.time_s = k;
-    for (std::complex<double>& value : stream.add_block(sensors, kSnapshots, 0.5, 1.0))
-      value = {random.normal(), random.normal()};
+    constexpr double kPhase_rad = 0.5;  // from one sensor to the next
+    std::vector<std::complex<double>>& values = stream.add_block(sensors, kSnapshots, 0.5, 1.0);
+    for (int t = 0; t < kSnapshots; ++t) {
+      const std::complex<double> signal = std::sqrt(10.0) * std::complex<double>(random.normal(), random.normal());
+      for (int m = 0; m < sensors; ++m)
+        values[static_cast<std::size_t>(t * sensors + m)] =
+            signal * std::polar(1.0, kPhase_rad * m) + std::complex<double>(random.normal(), random.normal());
+    }
     return;
   }
   measurement.z = BoundedVector::NullaryExpr(components, [&] { return 0.3 * random.normal() + 1.0; });

@@ -117,7 +117,9 @@ BatchEstimate FrequencyChangeBatch::solve(TargetMotionBatch& batch, const Bearin
         frequencies.levels() == 1 && scan(frequencies, estimate).statistic <= scan_threshold(frequencies.size());
     if (!steady) {
       // Bearings that are outliers pull at the state, and the frequencies then seem to disagree with it.
-      const std::vector<Outlier> outliers = outliers_among(batch, window);
+      // The thorough search is for one answer about a log; trackers, which solve anew and anew, allocate nothing.
+      const std::vector<Outlier> thorough = options_.level ? outliers_among(batch, window) : std::vector<Outlier>();
+      const std::span<const Outlier> outliers = options_.level ? std::span(thorough) : find_outliers_(window, estimate);
       if (outliers.empty())
         find_levels(batch, window, frequencies, prior, estimate);
       else
@@ -201,8 +203,9 @@ bool FrequencyChangeBatch::merge(TargetMotionBatch& batch, const BearingWindow& 
       return joint.found && 2.0 * (joint.objective - estimate.objective) < alike(frequencies.size());
     };
     BatchEstimate refined = batch.refine(estimate.x, window, prior, &frequencies);
-    // Where the range is open the way from one minimum to the other is long: from all starts before it is denied.
-    if (!are_one(refined)) refined = batch.solve(window, prior, &estimate.x, &frequencies);
+    // Where the range is open the way from one minimum to the other is long: of one answer about a log, from all starts
+    // before it is denied.
+    if (options_.level && !are_one(refined)) refined = batch.solve(window, prior, &estimate.x, &frequencies);
     if (are_one(refined)) {
       estimate = refined;
       merged = true;

@@ -15,7 +15,7 @@ namespace truebearing {
 template <typename Vector, typename Matrix>
 bool is_in_sector(const Vector& x, const Matrix& P) {
   constexpr double kAnywhere_rad = 1.0;
-  return std::abs(x[0]) < 0.5 * kPi && P(0, 0) < kAnywhere_rad * kAnywhere_rad;
+  return std::abs(x[0]) < 0.5 * kPi && P(0, 0) < kAnywhere_rad * kAnywhere_rad && x.allFinite() && P.allFinite();
 }
 
 /// Of a measurement that was not looked at: the states of the step before stand.

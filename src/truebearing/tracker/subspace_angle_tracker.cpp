@@ -87,6 +87,8 @@ bool SubspaceAngleTracker::begin(double time_s) {
   if (N < 1) return false;
   const Eigen::MatrixXcd E = whole.basis.leftCols(N);
   Start now{time_s, signal_angles({M, interval_.spacing_wavelengths()}, E)};
+  if (!std::all_of(now.angles.begin(), now.angles.end(), [](double angle) { return std::isfinite(angle); }))
+    return false;  // of an interval beyond all numbers
   if (!first_ || static_cast<int>(first_->angles.size()) != N || time_s <= first_->time_s) {
     first_ = std::move(now);
     return false;

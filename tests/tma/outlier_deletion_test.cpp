@@ -10,8 +10,10 @@
 namespace truebearing::outlier_deletion_test {
 namespace {
 
+using ::testing::AnyOf;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
+using ::testing::Optional;
 
 const Eigen::Vector4d kTarget(3000.0, 5000.0, -2.0, 1.0);
 
@@ -68,7 +70,8 @@ TEST(OutlierDeletion, SaysWhereAnotherMayBeTheOne) {
   const BearingWindow straight = testing::two_legs(kTarget, 1e9, 50.0);
   const std::vector<Outlier> outliers = found(with_outliers(straight, {{4, 10.0}}));
   ASSERT_EQ(outliers.size(), 1u);
-  EXPECT_EQ(outliers.front().or_else, 5u);
+  EXPECT_EQ(outliers.front().at, 4u);
+  EXPECT_THAT(outliers.front().or_else, AnyOf(Optional(3u), Optional(5u)));  // a neighbour: which of them is rounding
   // The fit follows the last bearing wherever that goes: its leverage is near one.
   EXPECT_THAT(found(with_outliers(straight, {{5, 10.0}})), IsEmpty());
   // In a long window nothing else is in question.

@@ -10,6 +10,7 @@ _truebearing() {
   elif ((COMP_CWORD == 2)); then
     case $command in
       simulate) folder=scenarios ;;
+      new) folder=templates ;;
       tune | train | track | compare | check) folder=studies ;;
     esac
     if [[ $folder ]] && data=$("$program" --data-dir 2>/dev/null); then

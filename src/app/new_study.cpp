@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // truebearing new KIND [-o FILE]: a small complete study to begin with. These are data/templates/KIND.toml, studies that
-// run as they stand. Where the comment of a line begins with "--option", the last numbers before it are the option's.
+// run as they stand. Where the comment of a line begins with "--option", the last numbers before it are the option's; the
+// first line that says so has as many numbers as the option takes, and no other.
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -59,14 +60,15 @@ void check_numbers(const std::string& option, const std::vector<double>& numbers
 }
 
 // Puts the numbers where lines say the option.
-void set_option(std::string& study, const std::string& option, const std::vector<double>& numbers, std::size_t count) {
+void set_option(std::string& study, const std::string& option, const std::vector<double>& numbers) {
   if (numbers.empty()) return;
   const std::string mark = "# " + option;
-  if (study.find(mark) == std::string::npos) throw InputError(option, "is nothing that a study of this kind has");
-  check_numbers(option, numbers, count);
-  for (std::size_t at = study.find(mark); at != std::string::npos; at = study.find(mark, at + 1)) {
+  const std::size_t first = study.find(mark);
+  if (first == std::string::npos) throw InputError(option, "is nothing that a study of this kind has");
+  for (std::size_t at = first; at != std::string::npos; at = study.find(mark, at + 1)) {
     const std::size_t line = study.rfind('\n', at) + 1;
     const auto places = numbers_in(std::string_view(study).substr(line, at - line));
+    if (at == first) check_numbers(option, numbers, places.size());
     for (std::size_t i = 1; i <= numbers.size(); ++i) {
       const auto& [begin, length] = places.at(places.size() - i);
       const std::string text = fmt::format("{}", numbers[numbers.size() - i]);
@@ -89,9 +91,9 @@ void write_new_study(const NewArguments& options) {
   if (!is_standard_output(output) && std::filesystem::exists(output))
     throw InputError(output, "is there already", "-o FILE of another name");
   std::string study = read_text_file(data_folder() / "data/templates" / (options.kind + ".toml"), kMostBytes);
-  set_option(study, "--sigma", options.sigma, options.kind == "sonar" ? 2 : 1);
-  set_option(study, "--period", options.period_s, 1);
-  set_option(study, "--speeds", options.speeds, 2);
+  set_option(study, "--sigma", options.sigma);
+  set_option(study, "--period", options.period_s);
+  set_option(study, "--speeds", options.speeds);
   const std::string name = std::filesystem::path(output).stem().string();
   if (!is_standard_output(output)) rename(study, options.kind, name);
   write_output(output, study);
@@ -106,7 +108,7 @@ void write_new_study(const NewArguments& options) {
 void add_new(const Subcommands& all) {
   auto options = std::make_shared<NewArguments>();
   const Subcommand command = all.add("new", "write a small complete study to begin with");
-  command.argument("kind", options->kind, "radar, bearings, sonar, array or flight").required().one_of(kinds());
+  command.argument("kind", options->kind, fmt::format("{}", fmt::join(kinds(), ", "))).required().one_of(kinds());
   command.argument("-o,--output", options->output, "the file; KIND.toml where not given; - is standard output");
   command.argument(
       "--sigma", options->sigma,

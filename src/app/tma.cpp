@@ -12,119 +12,16 @@
 #include "app/report_output.hpp"
 #include "app/subcommands.hpp"
 #include "app/tma_answer.hpp"
+#include "app/tma_log.hpp"
 #include "truebearing/core/angle.hpp"
 #include "truebearing/core/error.hpp"
-#include "truebearing/recording/recording_csv.hpp"
 #include "truebearing/report/tma_page.hpp"
-#include "truebearing/tma/target_motion_batch.hpp"
 #include "truebearing/tma/cho_2015.hpp"
 #include "truebearing/tma/frequency_changes.hpp"
+#include "truebearing/tma/target_motion_batch.hpp"
 
 namespace truebearing {
 namespace {
-
-struct TmaArguments {
-  std::string log;
-  std::string method = "ml";
-  std::string json;
-  LogArguments reading;
-  ReportArguments report;
-  double sigma_deg = 0.0;
-  double from_s = -std::numeric_limits<double>::infinity();
-  double to_s = std::numeric_limits<double>::infinity();
-  double huber_sigmas = std::numeric_limits<double>::infinity();
-  double velocity_sigma_mps = 5.0;
-  double range_m = 0.0;
-  double range_sigma_m = 0.0;
-  double frequency_sigma_hz = 0.0;
-  double sound_mps = kSoundInWater_mps;
-  std::string frequency_changes = "levels";
-  bool bearings_only = false;
-
-  bool is_cho() const { return method != "ml" && method != "map"; }
-};
-
-struct Windows {
-  BearingWindow bearings;
-  DopplerWindow frequencies;
-  std::vector<SensorState> own_ship;              // at each bearing
-  std::vector<std::size_t> line, frequency_line;  // of the log
-};
-
-Recording read_log(const TmaArguments& options) {
-  LogFindings findings;
-  RecordingOptions wanted;
-  wanted.measured = {"bearing_deg", "frequency_hz"};
-  Recording recording = read_recording(options.log, options.reading.over(wanted), &findings);
-  print_note(options.log, findings.note());
-  const bool has_frequencies = recording.measured == std::vector<std::string>{"bearing_deg", "frequency_hz"};
-  if (!has_frequencies && recording.measured != std::vector<std::string>{"bearing_deg"})
-    throw InputError(options.log, fmt::format("measures {}", fmt::join(recording.measured, ", ")),
-                     "bearing_deg, or bearing_deg and frequency_hz in this order");
-  if (has_frequencies && options.is_cho() && !options.bearings_only)
-    throw InputError(options.log, "has frequencies, which --method " + options.method + " takes no notice of",
-                     "--method ml or map, or --bearings-only");
-  if (recording.truth_space && !begins_in_plane(*recording.truth_space))
-    throw InputError(options.log, "has a truth that is not in the plane", "truth_east_m, truth_north_m");
-  return recording;
-}
-
-void add_frequency(const Measurement& measurement, const TmaArguments& options, DopplerWindow& window) {
-  if (measurement.sigma.size() == 0 && !(options.frequency_sigma_hz > 0.0))
-    throw InputError(options.log, "does not say how good its frequencies are",
-                     "a column frequency_sigma_hz, --frequency-sigma, or --bearings-only");
-  const double sigma_hz = options.frequency_sigma_hz > 0.0 ? options.frequency_sigma_hz : measurement.sigma[1];
-  window.add(measurement.time_s, measurement.z[1], sigma_hz, *measurement.sensor);
-}
-
-// Without own ship's velocity its own share of the Doppler shift would be taken for the target's.
-void check_velocities(const DopplerWindow& window, const std::string& log) {
-  bool at_rest = true, moved = false;
-  for (std::size_t i = 0; i < window.size(); ++i) {
-    at_rest = at_rest && window.sensor(i).velocity_mps.isZero(0.0);
-    moved = moved || window.sensor(i).position_m != window.sensor(0).position_m;
-  }
-  if (at_rest && moved)
-    throw InputError(log, "has frequencies of a sensor that moves, and not its velocity",
-                     "columns sensor_east_mps, sensor_north_mps, or --bearings-only");
-}
-
-Windows windows_of(const Recording& recording, const TmaArguments& options, TmaAnswer& answer) {
-  Windows windows{{}, DopplerWindow(options.sound_mps), {}, {}, {}};
-  const bool has_frequencies = recording.measured.size() == 2 && !options.bearings_only;
-  for (std::size_t k = 0; k < recording.measurements.size(); ++k) {
-    const Measurement& measurement = recording.measurements[k];
-    if (measurement.time_s < options.from_s || measurement.time_s > options.to_s) continue;
-    const bool has_bearing = std::isfinite(measurement.z[0]);
-    const bool has_frequency = has_frequencies && std::isfinite(measurement.z[1]) && measurement.z[1] > 0.0;
-    answer.missing += !has_bearing;
-    answer.missing_frequencies += has_frequencies && !has_frequency;
-    if (!has_bearing && !has_frequency) continue;
-    if (!measurement.sensor)
-      throw InputError(options.log, "does not say where own ship was", "columns sensor_east_m, sensor_north_m");
-    if (has_frequency) {
-      add_frequency(measurement, options, windows.frequencies);
-      windows.frequency_line.push_back(recording.line[k]);
-    }
-    if (!has_bearing) continue;
-    if (measurement.sigma.size() == 0 && !(options.sigma_deg > 0.0))
-      throw InputError(options.log, "does not say how good its bearings are", "a column bearing_sigma_deg, or --sigma");
-    const double sigma_rad = options.sigma_deg > 0.0 ? radians(options.sigma_deg) : measurement.sigma[0];
-    windows.bearings.add(measurement.time_s, measurement.z[0], sigma_rad, measurement.sensor->position_m);
-    windows.own_ship.push_back(*measurement.sensor);
-    windows.line.push_back(recording.line[k]);
-    answer.own_ship = *measurement.sensor;
-    if (recording.truth_space && recording.truth[0].x[k].head<4>().allFinite()) answer.truth = recording.truth[0].x[k];
-  }
-  constexpr std::size_t kFewest = 5;
-  if (windows.bearings.size() < kFewest)
-    throw InputError(options.log, fmt::format("has {} usable bearings in that time", windows.bearings.size()),
-                     fmt::format("{} or more", kFewest));
-  if (!(windows.bearings.last_time_s() > windows.bearings.first_time_s()))
-    throw InputError(options.log, "has all its bearings at one time", "bearings over a time");
-  check_velocities(windows.frequencies, options.log);
-  return windows;
-}
 
 BatchPrior prior_of(const TmaArguments& options, const BearingWindow& window) {
   BatchPrior prior;
@@ -170,7 +67,7 @@ std::vector<Eigen::Vector4d> hypotheses(const BearingWindow& window, const Doppl
 }
 
 // The times over which the source kept a level, outliers apart.
-void list_levels(const Windows& windows, TmaSource& source, TmaAnswer& answer) {
+void list_levels(const TmaWindows& windows, TmaSource& source, TmaAnswer& answer) {
   const DopplerWindow& window = windows.frequencies;
   std::vector<SourceFrequency> sources;
   window.sources(answer.estimate.x, answer.estimate.time_s, sources);
@@ -211,7 +108,7 @@ void solve_by_cho(const BearingWindow& bearings, const TmaArguments& options, Tm
 }
 
 // By maximum likelihood or maximum a posteriori; the frequencies that it used.
-const DopplerWindow* solve_by_batch(Windows& windows, const TmaArguments& options, TmaAnswer& answer) {
+const DopplerWindow* solve_by_batch(TmaWindows& windows, const TmaArguments& options, TmaAnswer& answer) {
   TargetMotionBatch batch({.huber_sigmas = options.huber_sigmas});
   answer.has_prior = options.method == "map";
   answer.is_robust = std::isfinite(options.huber_sigmas);
@@ -239,7 +136,7 @@ const DopplerWindow* solve_by_batch(Windows& windows, const TmaArguments& option
 }
 
 // What the bearings and frequencies between two times say by themselves.
-TmaStretch stretch_of(const Windows& windows, const DopplerWindow* used, double from_s, double to_s) {
+TmaStretch stretch_of(const TmaWindows& windows, const DopplerWindow* used, double from_s, double to_s) {
   constexpr std::size_t kFewest = 5;
   TmaStretch stretch;
   stretch.from_s = from_s;
@@ -270,7 +167,8 @@ TmaStretch stretch_of(const Windows& windows, const DopplerWindow* used, double 
 
 // Before and after a change of velocity. A turn takes a while: farther from it where the rest is not yet, or no more,
 // one course and speed.
-std::vector<TmaStretch> stretches_of(const Windows& windows, const DopplerWindow* used, const VelocityChange& change) {
+std::vector<TmaStretch> stretches_of(const TmaWindows& windows, const DopplerWindow* used,
+                                     const VelocityChange& change) {
   constexpr int kMostSteps = 4;
   const double first_s = windows.bearings.first_time_s(), last_s = windows.bearings.last_time_s();
   const double step_s = std::max(change.latest_s - change.earliest_s, 0.01 * (last_s - first_s));
@@ -283,7 +181,7 @@ std::vector<TmaStretch> stretches_of(const Windows& windows, const DopplerWindow
 }
 
 // What the residuals say, and what else the measurements may be where one course and speed does not explain them.
-void examine(const Windows& windows, const DopplerWindow* used, TmaAnswer& answer) {
+void examine(const TmaWindows& windows, const DopplerWindow* used, TmaAnswer& answer) {
   const BearingWindow& bearings = windows.bearings;
   ResidualChecks& checks = answer.residuals;
   checks = check_residuals(bearings, answer.estimate, used);
@@ -301,7 +199,7 @@ void examine(const Windows& windows, const DopplerWindow* used, TmaAnswer& answe
     answer.reversed = find_reversed(bearings, checks.least_squares);
 }
 
-void solve(Windows& windows, const TmaArguments& options, TmaAnswer& answer) {
+void solve(TmaWindows& windows, const TmaArguments& options, TmaAnswer& answer) {
   const DopplerWindow* used = nullptr;
   if (options.is_cho())
     solve_by_cho(windows.bearings, options, answer);
@@ -331,11 +229,11 @@ void tma(const TmaArguments& options) {
   if ((options.range_m > 0.0) != (options.range_sigma_m > 0.0))
     throw InputError("--range, --range-sigma", "stand one without the other", "both or neither");
   check_outputs({options.json, options.report.page}, {options.log});
-  const Recording recording = read_log(options);
+  const Recording recording = read_tma_log(options);
   TmaAnswer answer;
   answer.log = options.log;
   answer.method = options.method;
-  Windows windows = windows_of(recording, options, answer);
+  TmaWindows windows = tma_windows(recording, options, answer);
   answer.bearings = windows.bearings.size();
   answer.from_s = windows.bearings.first_time_s();
   solve(windows, options, answer);

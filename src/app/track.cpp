@@ -16,6 +16,7 @@
 #include "app/output.hpp"
 #include "app/report_output.hpp"
 #include "app/subcommands.hpp"
+#include "app/track_output.hpp"
 #include "app/track_report.hpp"
 #include "truebearing/array/recorded_array.hpp"
 #include "truebearing/evaluation/report.hpp"
@@ -49,67 +50,6 @@ struct TrackArguments {
            is_standard_output(report.page);
   }
   std::vector<std::string> outputs() const { return {output, json, events, report.page}; }
-};
-
-// Writes the records of all trackers whose state is the largest, as they come.
-class RecordOutput {
- public:
-  // measured: columns of the log, as many as an innovation has components; or 0.
-  RecordOutput(const std::string& path, const TrackerSet& trackers, int measured)
-      : output_(path), space_(widest(trackers)), writer_(*space_, std::max(measured, 1)) {}
-
-  // The tracks of several are only in order when all are there.
-  void wait_for_all() { waits_ = true; }
-
-  void add(const std::string& name, const StepRecord& record) {
-    if (record.space == space_) writer_.add(name, record);
-    if (!waits_) output_.write(writer_.take());
-  }
-  void flush() { output_.flush(); }
-  void finish() {
-    if (waits_) writer_.sort_by_time();
-    output_.write(writer_.take());
-    output_.finish();
-  }
-
- private:
-  static const StateSpace* widest(const TrackerSet& trackers) {
-    int widest = 0;
-    for (int i = 1; i < trackers.size(); ++i)
-      if (trackers.space(i).size() > trackers.space(widest).size()) widest = i;
-    return &trackers.space(widest);
-  }
-
-  OutputStream output_;
-  const StateSpace* space_;
-  StepLogWriter writer_;
-  bool waits_ = false;
-};
-
-// What the trackers notice, as CSV.
-class EventOutput {
- public:
-  explicit EventOutput(const std::string& path) : output_(path), csv_({"tracker", "time_s", "event", "value"}) {}
-
-  void add(const std::string& tracker, const TrackEvent& event) {
-    csv_.text(tracker);
-    csv_.number(event.time_s);
-    csv_.text(to_string(event.kind));
-    csv_.number(event.value);
-    csv_.end_row();
-  }
-  void flush() {
-    output_.write(csv_.take());
-    output_.flush();
-  }
-  void finish() {
-    output_.write(csv_.take());
-    output_.finish();
-  }
-
- private:
-  OutputStream output_;
-  CsvWriter csv_;
 };
 
 // The trackers on a log: what they do is written, counted and remembered for the report.

@@ -91,6 +91,7 @@ TEST(Completion, OffersCommandsStudiesAndOptions) {
   EXPECT_EQ(completed(folder, "--ver", 1), "--version\n");
   EXPECT_EQ(completed(folder, "compare radar_1d_s", 2), "radar_1d_shift\n");
   EXPECT_EQ(completed(folder, "simulate cho_s2", 2), "cho_s2\n");
+  EXPECT_EQ(completed(folder, "new so", 2), "sonar\n");
   EXPECT_EQ(completed(folder, "compare radar_1d_shift --se", 3), "--seed\n");
 }
 

@@ -37,7 +37,7 @@ Referee::Weights weights_after(int steps, const Errors& corrected, const Errors&
     const BoundedVector published =
         reference_record.x +
         BoundedVector(Eigen::Vector2d(w.position, w.velocity)).cwiseProduct(x_corrected - reference_record.x);
-    referee.predict(base, x_corrected, reference_record, published);
+    referee.remember(base, x_corrected, reference_record, published);
   }
   return referee.weights(options);
 }
@@ -99,7 +99,7 @@ TEST(Referee, UnevenTimesChangeNothing) {
                                  BoundedMatrix::Constant(1, 1, 1e-6), 0.0};
     referee.judge(base, options);
     reference.x = Eigen::Vector2d(2.0 * t * t, 4.0 * t);
-    referee.predict(base, reference.x + BoundedVector(Eigen::Vector2d(0.0, 0.01)), reference, reference.x);
+    referee.remember(base, reference.x + BoundedVector(Eigen::Vector2d(0.0, 0.01)), reference, reference.x);
   }
   EXPECT_LT(referee.weights(options).velocity, 1e-6);
 }
@@ -116,7 +116,7 @@ TEST(Referee, MeasurementsThatWereNotUsedDoNotCount) {
   StepRecord reference = base;
   reference.P = Eigen::Matrix2d::Identity();
   base.innovation = Innovation{BoundedVector::Zero(1), BoundedVector::Zero(1), BoundedMatrix::Identity(1, 1), 0.0};
-  referee.predict(base, Eigen::Vector2d(1e6, 0.0), reference, reference.x);
+  referee.remember(base, Eigen::Vector2d(1e6, 0.0), reference, reference.x);
   base.time_s = 1.0;
   base.status = StepStatus::coasted;
   referee.judge(base, {});

@@ -127,7 +127,7 @@ std::span<const StepRecord> Correction::correct(const Ensemble& ensemble) {
   return {records_.data(), references.size()};
 }
 
-// The reference, or the fallback where that lately foretold better: what lies between them by the referee's weights.
+// The reference, or the fallback where that lately agreed better with the measurements: what lies between them by the referee's weights.
 const StepRecord& Correction::trusted(const StepRecord& base, const StepRecord& reference, const StepRecord* fallback,
                                       Track& track) {
   if (!fallback || fallback->status != reference.status || base.status != reference.status) return reference;
@@ -142,7 +142,7 @@ const StepRecord& Correction::trusted(const StepRecord& base, const StepRecord& 
   trusted_.track = reference.track;
   trusted_.time_s = reference.time_s;
   trusted_.status = reference.status;
-  if (base.status == StepStatus::ok) track.handover.predict(base, reference.x, *fallback, x);
+  if (base.status == StepStatus::ok) track.handover.remember(base, reference.x, *fallback, x);
   return trusted_;
 }
 
@@ -174,7 +174,7 @@ void Correction::correct_record(const CorrectionInputs::Records& step, Track& tr
   const BoundedVector weighted =
       apart ? limit_kappa(distance, G.cwiseProduct(d), bounds_.kappa).d : BoundedVector(g * w.position * d);
   const BoundedVector x = within_kappa(reference.x, distance, weighted, bounds_.kappa);
-  if (bounds_.referee && base.status == StepStatus::ok) track.referee.predict(base, reference.x + d, reference, x);
+  if (bounds_.referee && base.status == StepStatus::ok) track.referee.remember(base, reference.x + d, reference, x);
 
   BoundedMatrix P;
   const bool valid = Blend(G[0], G[G.size() - 1]).covariance(P_c, reference.P, d, P);

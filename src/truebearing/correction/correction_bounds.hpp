@@ -14,7 +14,7 @@ struct CorrectionBounds {
   double kappa = 3.0;                          ///< > 0, limit_kappa's; infinity: not limited
   bool gate = true;                            ///< whether the model's box closes the gate, where it has one
   std::optional<RefereeOptions> referee = {};  ///< absent: none
-  /// A tracker that is trusted in the reference's place where the referee finds that it foretells better; empty: none.
+  /// A tracker that is trusted in the reference's place where the referee finds it the better one; empty: none.
   std::string fallback = {};
 
   bool operator==(const CorrectionBounds&) const = default;

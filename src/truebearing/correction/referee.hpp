@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The referee: which of two estimates has lately foretold the measurements better, the corrected one or the reference?
+// The referee: which of two estimates has lately agreed better with the measurements, the corrected one or the reference?
 // Positions and velocities are judged apart, so that neither can hide behind the other. A position is carried one step
 // ahead with the velocity that was published, and compared with what is measured there; a velocity is compared, some
 // steps later, with the slope at its own time of the parabola through the measurements around it, which has no lag:
@@ -38,8 +38,8 @@ class Referee {
     double velocity = 1.0;
   };
 
-  /// Judges the predictions of the last steps by the measured position in the base's record of this one. Call once per
-  /// step, before predict(). A step that used no measurement leaves no trace.
+  /// Judges the estimates of the last steps by the measured position in the base's record of this one. Call once per
+  /// step, before remember(). A step that used no measurement leaves no trace.
   void judge(const StepRecord& base, const RefereeOptions& options) {
     if (base.status != StepStatus::ok || !base.innovation) return;
     const BoundedVector& z = base.innovation->z;
@@ -51,8 +51,8 @@ class Referee {
 
   /// What the next measurements will be held against, of a step that used one: the corrected estimate before any
   /// weight, the reference's record, and what was published.
-  void predict(const StepRecord& base, const BoundedVector& corrected, const StepRecord& reference,
-               const BoundedVector& published) {
+  void remember(const StepRecord& base, const BoundedVector& corrected, const StepRecord& reference,
+                const BoundedVector& published) {
     const Eigen::Index m = published.size() / 2;
     if (!base.innovation || base.innovation->z.size() != m) return;
     estimates_[steps_++ % kKept] = {base.time_s, base.innovation->z, corrected,
@@ -106,6 +106,7 @@ class Referee {
 
   void judge_velocity(const StepRecord& base, const BoundedVector& z, const RefereeOptions& options) {
     const Eigen::Index m = z.size();
+    // Each parabola counts by how much of what differs there is the estimate's own error, as far as is claimed.
     std::array<double, kHalfWidths.size()> told{}, corrected{}, reference{};
     double all_told = 0.0;
     for (std::size_t i = 0; i < kHalfWidths.size(); ++i) {

@@ -9,6 +9,7 @@
 #include "truebearing/evaluation/metric.hpp"
 #include "truebearing/report/axis.hpp"
 #include "truebearing/report/markup.hpp"
+#include "truebearing/report/plot_clock.hpp"
 
 namespace truebearing {
 namespace {
@@ -39,23 +40,6 @@ bool has_timed(const ResultFigures& figures, const std::string& metric_name) {
 bool any_finite(const std::vector<double>& values) {
   return std::any_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
 }
-
-// Times of a log are seconds of an epoch, too long for ticks: they are counted from the first.
-struct Clock {
-  double zero_s = 0.0;
-  std::string label = "time (s)";
-
-  explicit Clock(const std::vector<double>& time_s) {
-    if (time_s.empty() || !(time_s.front() > 10.0 * (time_s.back() - time_s.front()))) return;
-    if (time_s.size() < 2) return;
-    zero_s = time_s.front();
-    label = fmt::format("time (s) since {:.15g} s", zero_s);
-  }
-  std::vector<double> from(std::vector<double> time_s) const {
-    for (double& time : time_s) time -= zero_s;
-    return time_s;
-  }
-};
 
 // Only the steps that are scored: what comes before would leave a gap at the edge.
 void keep_finite(std::vector<double>& x, std::vector<double>& y) {
@@ -113,7 +97,7 @@ Plot error_plot(const ResultFigures& figures, const std::string& quantity, const
   plot.id = fmt::format("{}error_{}", id, quantity);
   plot.title = fmt::format("{} error against time", capital_name(quantity));
   plot.y_label = fmt::format("RMSE of the {}", axis_name(quantity));
-  const Clock clock(figures.trackers.front().time_s);
+  const PlotClock clock(figures.trackers.front().time_s);
   plot.x_label = clock.label;
   std::vector<PlotSeries> lines;
   bool banded = false;
@@ -146,7 +130,7 @@ Plot nees_plot(const ResultFigures& figures, double expected, const std::string&
   std::vector<PlotSeries> lines;
   for (const ResultTracker& tracker : figures.trackers) {
     if (tracker.nees_expected != expected || !any_finite(tracker.nees_of)) continue;
-    const Clock clock(tracker.time_s);
+    const PlotClock clock(tracker.time_s);
     plot.x_label = clock.label;
     std::vector<double> x = clock.from(tracker.time_s), y = tracker.nees_of;
     if (plot.series.empty())

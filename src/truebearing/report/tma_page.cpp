@@ -8,6 +8,7 @@
 #include "truebearing/io/json_file.hpp"
 #include "truebearing/report/markup.hpp"
 #include "truebearing/report/page_parts.hpp"
+#include "truebearing/report/plot_clock.hpp"
 #include "truebearing/report/result_reader.hpp"
 
 namespace truebearing {
@@ -80,7 +81,6 @@ Plot residual_plot(const ResultReader& json) {
   Plot plot;
   plot.id = "residuals";
   plot.title = "What is left of the bearings";
-  plot.x_label = "time (s)";
   plot.y_label = "residual (standard deviations)";
   plot.caption =
       "Measured bearing minus that of the estimate. 19 of 20 lie in the band where one course and speed "
@@ -88,24 +88,20 @@ Plot residual_plot(const ResultReader& json) {
   const std::vector<double> time_s = details.at("time_s").numbers();
   if (time_s.empty()) return plot;
   constexpr double kOf95Percent = 1.96;
-  const double zero_s = time_s.front() > 10.0 * (time_s.back() - time_s.front()) ? time_s.front() : 0.0;
-  if (zero_s > 0.0) plot.x_label = fmt::format("time (s) since {:.15g} s", zero_s);
-  const auto from_zero = [&](std::vector<double> times_s) {
-    for (double& time : times_s) time -= zero_s;
-    return times_s;
-  };
-  const std::vector<double> ends = from_zero({time_s.front(), time_s.back()});
+  const PlotClock clock(time_s);
+  plot.x_label = clock.label;
+  const std::vector<double> ends = clock.from({time_s.front(), time_s.back()});
   plot.series.push_back(
       {"95 %", {"measured"}, Shape::band, ends, {-kOf95Percent, -kOf95Percent}, {kOf95Percent, kOf95Percent}});
   plot.series.push_back({"", {"ideal"}, Shape::line, ends, {0.0, 0.0}});
   const std::vector<double> residuals = details.at("residual_sigmas").numbers();
   if (residuals.size() != time_s.size()) throw details.error("has columns of unequal length");
-  plot.series.push_back({"a bearing", tracker_look(0), Shape::dots, from_zero(time_s), residuals});
+  plot.series.push_back({"a bearing", tracker_look(0), Shape::dots, clock.from(time_s), residuals});
   PlotSeries outliers{"outlier", tracker_look(1), Shape::dots, {}, {}};
   for (const ResultReader& outlier : json.at("outliers").at("bearings").items()) {
     const auto at = std::find(time_s.begin(), time_s.end(), outlier.at("time_s").number());
     if (at == time_s.end()) continue;
-    outliers.x.push_back(*at - zero_s);
+    outliers.x.push_back(*at - clock.zero_s);
     outliers.y.push_back(residuals.at(static_cast<std::size_t>(at - time_s.begin())));
   }
   if (!outliers.x.empty()) plot.series.push_back(std::move(outliers));
@@ -137,15 +133,18 @@ std::string solution_table(const ResultReader& json) {
       with_truth ? "<th scope=\"col\">truth</th>" : "", rows);
 }
 
-}  // namespace
-
-std::vector<Plot> tma_plots(std::string_view text, const std::string& file) {
-  const nlohmann::ordered_json parsed = parse_ordered_json(text, file, kTmaLimits);
-  const ResultReader json(parsed, file);
+std::vector<Plot> plots_of(const ResultReader& json) {
   std::vector<Plot> plots;
   for (Plot plot : {plane_plot(json), residual_plot(json)})
     if (!plot.empty()) plots.push_back(std::move(plot));
   return plots;
+}
+
+}  // namespace
+
+std::vector<Plot> tma_plots(std::string_view text, const std::string& file) {
+  const nlohmann::ordered_json parsed = parse_ordered_json(text, file, kTmaLimits);
+  return plots_of(ResultReader(parsed, file));
 }
 
 std::string tma_page(std::string_view text, const std::string& file) {
@@ -163,7 +162,7 @@ std::string tma_page(std::string_view text, const std::string& file) {
   for (const ResultReader& cause : json.at("causes").items())
     causes += fmt::format("<li>{}</li>\n", escaped(cause.at("says").text()));
   if (!causes.empty()) body += fmt::format("<h2>What the bearings look like besides</h2>\n<ul>\n{}</ul>\n", causes);
-  body += section("In the plane, and what is left", tma_plots(text, file));
+  body += section("In the plane, and what is left", plots_of(json));
   return html_page(log, body);
 }
 

@@ -92,12 +92,12 @@ FrequencyChangeBatch::FrequencyChangeBatch(FrequencyChangeOptions options)
 double FrequencyChangeBatch::scan_threshold(std::size_t frequencies) const {
   constexpr double kIntervals = 10.0;  // of each frequency
   constexpr double kWays = 3.0;        // to a false change: an edge, a stray that goes on, the scan
-  if (!options_.level) return options_.scan_threshold;
-  return chi_square_quantile(1.0 - *options_.level / (kWays * kIntervals * static_cast<double>(frequencies)), 1.0);
+  if (!options_.by_chance) return options_.scan_threshold;
+  return chi_square_quantile(1.0 - *options_.by_chance / (kWays * kIntervals * static_cast<double>(frequencies)), 1.0);
 }
 
 double FrequencyChangeBatch::alike(std::size_t frequencies) const {
-  return options_.level ? scan_threshold(frequencies) : options_.alike;
+  return options_.by_chance ? scan_threshold(frequencies) : options_.alike;
 }
 
 BatchEstimate FrequencyChangeBatch::solve(TargetMotionBatch& batch, const BearingWindow& window,
@@ -118,8 +118,9 @@ BatchEstimate FrequencyChangeBatch::solve(TargetMotionBatch& batch, const Bearin
     if (!steady) {
       // Bearings that are outliers pull at the state, and the frequencies then seem to disagree with it.
       // The thorough search is for one answer about a log; trackers, which solve anew and anew, allocate nothing.
-      const std::vector<Outlier> thorough = options_.level ? outliers_among(batch, window) : std::vector<Outlier>();
-      const std::span<const Outlier> outliers = options_.level ? std::span(thorough) : find_outliers_(window, estimate);
+      const std::vector<Outlier> thorough = options_.by_chance ? outliers_among(batch, window) : std::vector<Outlier>();
+      const std::span<const Outlier> outliers =
+          options_.by_chance ? std::span(thorough) : find_outliers_(window, estimate);
       if (outliers.empty())
         find_levels(batch, window, frequencies, prior, estimate);
       else
@@ -205,7 +206,7 @@ bool FrequencyChangeBatch::merge(TargetMotionBatch& batch, const BearingWindow& 
     BatchEstimate refined = batch.refine(estimate.x, window, prior, &frequencies);
     // Where the range is open the way from one minimum to the other is long: of one answer about a log, from all starts
     // before it is denied.
-    if (options_.level && !are_one(refined)) refined = batch.solve(window, prior, &estimate.x, &frequencies);
+    if (options_.by_chance && !are_one(refined)) refined = batch.solve(window, prior, &estimate.x, &frequencies);
     if (are_one(refined)) {
       estimate = refined;
       merged = true;

@@ -41,14 +41,14 @@ struct FrequencyChangeOptions {
 
   /// Where given, in place of both thresholds: how often a change is found in a window of one tone. A third of it is
   /// the scan's, whose n^2 / 2 intervals overlap: they are as good as 10 n that do not (simulated, n from 43 to 900).
-  std::optional<double> level;
+  std::optional<double> by_chance;
 
   /// For one answer about a whole log, where a change that was none is believed: no level is kept that the scan would
   /// not have told apart (among many pieces some differ by three standard deviations by chance), and manoeuvres are
   /// weighed.
   static FrequencyChangeOptions of_a_log() {
     FrequencyChangeOptions options;
-    options.level = 1e-3;
+    options.by_chance = 1e-3;
     options.weigh_manoeuvres = true;
     return options;
   }

@@ -81,6 +81,7 @@ void run_compare(const CompareArguments& options) {
     fmt::print("{}{}", notes, comparison_table(comparison));
   std::vector<RunPicture> pictures;
   if (options.report.wanted()) pictures = picture_runs(trackers, scenarios, comparison_options, comparison);
+  if (options.json.empty() && !options.report.wanted()) return;
   const std::string json = comparison_json(comparison, pictures);
   if (!options.json.empty()) write_output(options.json, json);
   if (options.report.wanted()) write_report(options.report, {parse_results(json, study.name())});

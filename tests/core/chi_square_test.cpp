@@ -19,6 +19,13 @@ TEST(ChiSquare, TwoDegreesOfFreedomAreExponential) {
     EXPECT_NEAR(chi_square_quantile(p, 2) / (-2.0 * std::log1p(-p)), 1.0, 1e-12) << p;
 }
 
+TEST(ChiSquare, MeansLieAsTheirSumDoes) {
+  const ChiSquareMeans ten = chi_square_means(5.0, 2.0);
+  EXPECT_NEAR(ten.low, 3.246973 / 5.0, 1e-6);
+  EXPECT_NEAR(ten.high, 20.483177 / 5.0, 1e-6);
+  EXPECT_TRUE(std::isnan(chi_square_means(0.0, 2.0).low));
+}
+
 TEST(ChiSquare, NormalQuantileIsItsRoot) {
   EXPECT_DOUBLE_EQ(normal_quantile(0.5), 0.0);
   EXPECT_NEAR(normal_quantile(0.975), 1.959963985, 1e-9);

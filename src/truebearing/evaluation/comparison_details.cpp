@@ -55,19 +55,16 @@ TrackerDetails DetailsTally::details() const {
     std::vector<double>& se = details.series_se.emplace_back();
     for (const StepMoments& step : moments) se.push_back(step.rmse_se());
   }
-  // A sum of N independent chi-squares of n degrees of freedom is one of N n.
-  constexpr double kOutside = 0.025;
-  double count = -1.0, low = kNaN, high = kNaN;
+  double count = -1.0;
+  ChiSquareMeans consistent{};
   for (const Nees& step : nees_) {
     if (step.count != count) {
       count = step.count;
-      const double freedom = count * dimension_;
-      low = count > 0.0 ? chi_square_quantile(kOutside, freedom) / count : kNaN;
-      high = count > 0.0 ? chi_square_quantile(1.0 - kOutside, freedom) / count : kNaN;
+      consistent = chi_square_means(count, dimension_);
     }
     details.nees.push_back(count > 0.0 ? step.sum / count : kNaN);
-    details.nees_low.push_back(low);
-    details.nees_high.push_back(high);
+    details.nees_low.push_back(consistent.low);
+    details.nees_high.push_back(consistent.high);
   }
   return details;
 }

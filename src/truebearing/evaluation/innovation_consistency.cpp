@@ -51,11 +51,11 @@ double InnovationConsistency::nis_ratio() const {
 }
 
 double InnovationConsistency::nis_ratio_low() const {
-  return steps_ > 0 ? chi_square_quantile(0.025, freedom_) / freedom_ : std::numeric_limits<double>::quiet_NaN();
+  return chi_square_means(freedom_, 1.0).low;
 }
 
 double InnovationConsistency::nis_ratio_high() const {
-  return steps_ > 0 ? chi_square_quantile(0.975, freedom_) / freedom_ : std::numeric_limits<double>::quiet_NaN();
+  return chi_square_means(freedom_, 1.0).high;
 }
 
 double InnovationConsistency::correlation() const {

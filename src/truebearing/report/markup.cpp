@@ -51,6 +51,11 @@ std::string escaped(std::string_view text) {
   return markup;
 }
 
+std::string capitalised(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
 std::string shown(double value, int digits) {
   if (!std::isfinite(value)) return "-";
   const std::string sign = value < 0.0 ? kMinus : "";

@@ -66,9 +66,7 @@ bool are_spread(const std::vector<double>& times_s) {
 Plot metric_plot(const ResultFigures& figures, const std::string& name, const std::string& id) {
   Plot plot;
   plot.id = fmt::format("{}at_times_{}", id, name);
-  plot.title = in_words(name);
-  if (plot.title[0] >= 'a' && plot.title[0] <= 'z') plot.title[0] = static_cast<char>(plot.title[0] - 'a' + 'A');
-  plot.title += " at the scored times";
+  plot.title = capitalised(in_words(name)) + " at the scored times";
   plot.x_label = "time (s)";
   std::vector<PlotSeries> lines;
   std::vector<double> values;

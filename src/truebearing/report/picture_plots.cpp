@@ -75,9 +75,7 @@ void add_uncertainty(const ResultTrack& track, const Look& look, Plot& plot) {
 Plot picture_plot(const Results& results, const ResultPicture& picture, const std::string& id) {
   Plot plot;
   plot.id = fmt::format("{}run_{}", id, picture.which);
-  std::string which = picture.which;
-  if (!which.empty() && which[0] >= 'a' && which[0] <= 'z') which[0] = static_cast<char>(which[0] - 'a' + 'A');
-  plot.title = fmt::format("{} run of {}", which, picture.judged_by);
+  plot.title = fmt::format("{} run of {}", capitalised(picture.which), picture.judged_by);
   plot.equal = picture.in_plane;
   plot.x_label = picture.in_plane ? "East (m)" : "time (s)";
   plot.y_label = picture.in_plane ? "North (m)" : axis_name(picture.component);

@@ -236,8 +236,7 @@ Look look_of(const ResultFigures& figures, const std::string& name) {
 }
 
 std::string capital_name(const std::string& quantity) {
-  std::string name = name_of(quantity);
-  if (!name.empty() && name[0] >= 'a' && name[0] <= 'z') name[0] = static_cast<char>(name[0] - 'a' + 'A');
+  std::string name = capitalised(name_of(quantity));
   std::replace(name.begin(), name.end(), '_', ' ');
   return name;
 }

@@ -104,10 +104,9 @@ double share_of_the_way(double a, double b, double bound) {
 
 std::string consistency(const ResultTracker& tracker, double runs) {
   if (!std::isfinite(tracker.nees) || !(tracker.nees_expected > 0.0) || !(runs >= 1.0)) return {};
-  constexpr double kOutside = 0.025;
-  const double freedom = runs * tracker.nees_expected;
-  if (tracker.nees > chi_square_quantile(1.0 - kOutside, freedom) / runs) return "claims to know more than it does";
-  if (tracker.nees < chi_square_quantile(kOutside, freedom) / runs) return "knows more than it claims";
+  const ChiSquareMeans consistent = chi_square_means(runs, tracker.nees_expected);
+  if (tracker.nees > consistent.high) return "claims to know more than it does";
+  if (tracker.nees < consistent.low) return "knows more than it claims";
   return "consistent";
 }
 

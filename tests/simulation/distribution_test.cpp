@@ -72,6 +72,27 @@ TEST(Distribution, ChoiceIsEven) {
   EXPECT_TRUE(counts_are_even(counts));
 }
 
+TEST(Distribution, QuantileAndShareBelowUndoEachOther) {
+  for (const char* value : {"{ uniform = [-400, 400] }", "{ normal = [5, 1000] }", "{ log_uniform = [0.25, 4] }"})
+    for (const double u : {0.001, 0.3, 0.5, 0.999})
+      EXPECT_NEAR(read(value).share_below(read(value).quantile(u)), u, 1e-9) << value;
+  EXPECT_EQ(read("{ uniform = [1, 2] }").share_below(0.5), 0.0);
+  EXPECT_EQ(read("{ uniform = [1, 2] }").share_below(2.5), 1.0);
+  EXPECT_EQ(read("{ log_uniform = [1, 2] }").share_below(-1.0), 0.0);
+}
+
+TEST(Distribution, NoShareLiesBelowTheLeastOfSeparateValues) {
+  const Distribution choice = read("{ choice = [5, 1, 3] }");
+  EXPECT_EQ(choice.quantile(0.1), 1.0);
+  EXPECT_EQ(choice.quantile(0.5), 3.0);
+  EXPECT_EQ(choice.quantile(1.0), 5.0);
+  EXPECT_EQ(choice.share_below(1.0), 0.0);
+  EXPECT_NEAR(choice.share_below(3.5), 2.0 / 3.0, 1e-12);
+  EXPECT_EQ(read("7").share_below(7.0), 0.0);
+  EXPECT_EQ(read("7").share_below(7.1), 1.0);
+  EXPECT_EQ(read("{ uniform = [2, 2] }").share_below(2.1), 1.0);
+}
+
 TEST(Distribution, EveryKindTakesOneNumberFromTheStream) {
   for (const char* value :
        {"1", "{ uniform = [1, 2] }", "{ normal = [1, 2] }", "{ log_uniform = [1, 2] }", "{ choice = [1, 2, 3] }"}) {

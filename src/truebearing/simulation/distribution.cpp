@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <toml++/toml.h>
 #include <utility>
 
@@ -49,10 +50,20 @@ Distribution::Distribution(Kind kind, std::vector<double> parameters)
     : kind_(kind), parameters_(std::move(parameters)) {
   if (const std::string found = fault(kind_, parameters_); !found.empty())
     throw InputError("distribution", found, kValid);
+  if (kind_ != Kind::choice) return;
+  ascending_ = parameters_;
+  std::sort(ascending_.begin(), ascending_.end());
 }
 
 double Distribution::draw(RandomStream& stream) const {
-  const double u = stream.uniform();
+  return value(stream.uniform(), parameters_);
+}
+
+double Distribution::quantile(double u) const {
+  return value(u, ascending_);
+}
+
+double Distribution::value(double u, const std::vector<double>& choices) const {
   const double a = parameters_.front();
   const double b = parameters_.back();
   switch (kind_) {
@@ -65,9 +76,29 @@ double Distribution::draw(RandomStream& stream) const {
     case Kind::log_uniform:
       return std::clamp(a * std::pow(b / a, u), a, b);
     case Kind::choice:
-      return parameters_[static_cast<std::size_t>(u * static_cast<double>(parameters_.size()))];
+      return choices[std::min(static_cast<std::size_t>(u * static_cast<double>(choices.size())), choices.size() - 1)];
   }
   return a;
+}
+
+double Distribution::share_below(double x) const {
+  const double a = parameters_.front();
+  const double b = parameters_.back();
+  switch (kind_) {
+    case Kind::fixed:
+      return x > a ? 1.0 : 0.0;
+    case Kind::uniform:
+      return a < b ? std::clamp((x - a) / (b - a), 0.0, 1.0) : (x > a ? 1.0 : 0.0);
+    case Kind::normal:
+      return b > 0.0 ? 0.5 * std::erfc((a - x) / (b * std::numbers::sqrt2)) : (x > a ? 1.0 : 0.0);
+    case Kind::log_uniform:
+      if (x <= a) return 0.0;
+      return a < b ? std::min(std::log(x / a) / std::log(b / a), 1.0) : 1.0;
+    case Kind::choice:
+      return static_cast<double>(std::lower_bound(ascending_.begin(), ascending_.end(), x) - ascending_.begin()) /
+             static_cast<double>(ascending_.size());
+  }
+  return 0.0;
 }
 
 Distribution read_distribution(TableReader& table, const std::string& key, Range range) {

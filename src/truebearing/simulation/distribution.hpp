@@ -24,11 +24,19 @@ class Distribution {
   /// Takes exactly one uniform number from the stream, whatever the kind: to make one number of a scenario a
   /// distribution does not change what the others draw.
   double draw(RandomStream& stream) const;
+  /// The value that a share u in [0, 1) of the draws lies below.
+  double quantile(double u) const;
+  /// The share of the draws below x: the other way round.
+  double share_below(double x) const;
   bool is_fixed() const { return kind_ == Kind::fixed; }
+  bool operator==(const Distribution&) const = default;
 
  private:
+  double value(double u, const std::vector<double>& choices) const;
+
   Kind kind_;
   std::vector<double> parameters_;
+  std::vector<double> ascending_;  ///< where they are to choose from
 };
 
 /// Reads a number or a distribution all of whose draws lie in `range`; a normal, which knows no range, is for

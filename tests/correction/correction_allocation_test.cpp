@@ -14,6 +14,8 @@
 #include "truebearing/correction/corrected_tracker.hpp"
 #include "truebearing/evaluation/tracker_set.hpp"
 #include "truebearing/tracker/filter_bank.hpp"
+#include "truebearing/tracker/particle_limit.hpp"
+#include "truebearing/tracker/position_sensor.hpp"
 
 namespace truebearing::correction_allocation_test {
 namespace {
@@ -105,6 +107,20 @@ TEST(FilterTracker, StepsAllocateNothing) {
 
 TEST(FilterBank, StepsAllocateNothing) {
   EXPECT_EQ(allocations_of_second_pass(*testing::radar_bank(std::vector<RadarFilter>(10))), 0);
+}
+
+// The target jumps away, so that the track begins afresh on the way.
+TEST(ParticleLimit, StepsAllocateNothing) {
+  ParticleLimitOptions options;
+  options.particles = 200;
+  ParticleLimit tracker(sensor_of(PositionSensor<2>{{100.0, 100.0}}), options);
+  std::vector<Measurement> log = testing::plane_log(1, 100);
+  for (std::size_t k = 50; k < log.size(); ++k) log[k].z[0] += 1e5;
+  EXPECT_EQ(allocations_of([&] {
+              for (const Measurement& measurement : log) tracker.step(measurement);
+            }),
+            0);
+  EXPECT_GT(tracker.fresh_starts(), 0);
 }
 
 TEST(CorrectedTracker, StepsInThePlaneAllocateNothing) {

@@ -22,7 +22,8 @@ enum class StreamId : std::uint32_t {
   measurement = 3,
   learning = 4,
   test = 5,
-  schedule = 6
+  schedule = 6,
+  particles = 7
 };
 
 /// Which Monte Carlo run: all that a simulated recording depends on besides its scenario.

@@ -37,6 +37,8 @@ struct PlanarFlight {
 
   /// At times that ascend from 0, from the origin on a random course.
   FlownTrack fly(std::span<const double> times_s, RandomStream& stream) const;
+
+  bool operator==(const PlanarFlight&) const = default;
 };
 
 }  // namespace truebearing

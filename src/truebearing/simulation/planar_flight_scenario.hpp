@@ -53,6 +53,7 @@ class PlanarFlightScenario final : public Scenario {
   const StateSpace& truth_space() const override;
   std::optional<Measured> measured() const override { return parameters_.sensor.measured(); }
   bool reports_sigma() const override { return parameters_.sensor.reported; }
+  const PlanarFlightParameters& parameters() const { return parameters_; }
 
  private:
   /// A flight at the looks, one to a column: as flown (4 x looks), and where it was recorded (2 x looks).

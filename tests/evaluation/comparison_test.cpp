@@ -131,6 +131,33 @@ TEST(Comparison, TableHasARowForEveryTrackerAndPair) {
     EXPECT_THAT(table, HasSubstr(text));
 }
 
+// (RMSE of tuned - RMSE) / (RMSE of tuned - RMSE of the bound), where both are there.
+TEST(Comparison, SaysHowFarEachTrackerComesFromTunedToTheBound) {
+  Comparison comparison = compared(1);
+  EXPECT_FALSE(json::parse(comparison_json(comparison))["trackers"]["plain"].contains("share_of_way"))
+      << "tuned is the bound itself";
+  comparison.bounds = {"nfnn"};
+  const auto rmse = [&](const char* name) -> double& {
+    for (TrackerSummary& summary : comparison.trackers)
+      if (summary.name == name) return summary.quantities[0].rmse;
+    throw std::out_of_range(name);
+  };
+  rmse("tuned") = 100.0;
+  rmse("nfnn") = 80.0;
+  rmse("plain") = 90.0;
+  rmse("raw") = 110.0;
+  json trackers = json::parse(comparison_json(comparison))["trackers"];
+  EXPECT_EQ(trackers["plain"]["share_of_way"]["position_m"], 0.5);
+  EXPECT_EQ(trackers["tuned"]["share_of_way"]["position_m"], 0.0);
+  EXPECT_EQ(trackers["nfnn"]["share_of_way"]["position_m"], 1.0);
+  EXPECT_EQ(trackers["raw"]["share_of_way"]["position_m"], -0.5);
+  for (const char* text : {"nfnn (bound)", "way to nfnn", "0.500", "-0.500"})
+    EXPECT_THAT(comparison_table(comparison), HasSubstr(text));
+  rmse("nfnn") = 101.0;
+  trackers = json::parse(comparison_json(comparison))["trackers"];
+  EXPECT_TRUE(trackers["plain"]["share_of_way"]["position_m"].is_null()) << "no way down";
+}
+
 TEST(Comparison, PairOfAnUnknownTrackerIsRefused) {
   const LineScenario scenario = testing::radar_family(5);
   ComparisonOptions bad = options(1);

@@ -8,6 +8,7 @@
 
 #include "truebearing/evaluation/details_json.hpp"
 #include "truebearing/evaluation/pair_table.hpp"
+#include "truebearing/evaluation/share_of_way.hpp"
 #include "truebearing/evaluation/text_table.hpp"
 #include "truebearing/evaluation/time_table.hpp"
 #include "truebearing/evaluation/track_table.hpp"
@@ -89,6 +90,8 @@ Json tracker_json(const Comparison& comparison, const TrackerSummary& summary) {
   json["coverage95"] = number(summary.coverage95);
   if (plain)
     json["ratio_to_plain"] = by_quantity(summary, [&](const QuantitySummary& q) { return ratio_to(plain, q); });
+  if (const WayToBound way = way_to_bound(comparison))
+    json["share_of_way"] = by_quantity(summary, [&](const QuantitySummary& q) { return way.share(summary, q.name); });
   for (const auto& [name, ns] : comparison.ns_per_step)
     if (name == summary.name) json["ns_per_step"] = number(ns);
   json["scored_steps"] = summary.scored_steps;
@@ -127,6 +130,7 @@ std::vector<std::string> heading(const Comparison& comparison) {
     row.push_back(fmt::format("{} RMSE {}", name_of(quantity.name), unit_of(quantity.name)));
     row.push_back("+-");
     if (comparison.tracker(kPlain)) row.push_back("/plain");
+    if (const WayToBound way = way_to_bound(comparison)) row.push_back("way to " + way.to->name);
   }
   row.insert(row.end(), {"NEES", "cover95"});
   if (quantities_of(comparison).size() > 1)
@@ -139,12 +143,18 @@ std::vector<std::string> heading(const Comparison& comparison) {
 
 std::vector<std::string> table_row(const Comparison& comparison, const TrackerSummary& summary) {
   const TrackerSummary* plain = comparison.tracker(kPlain);
-  std::vector<std::string> row{summary.name};
+  const bool is_bound =
+      std::find(comparison.bounds.begin(), comparison.bounds.end(), summary.name) != comparison.bounds.end();
+  std::vector<std::string> row{is_bound ? summary.name + " (bound)" : summary.name};
   for (const QuantitySummary& column : quantities_of(comparison)) {
     const QuantitySummary* quantity = summary.quantity(column.name);
     row.push_back(quantity ? figure(quantity->rmse) : "-");
     row.push_back(quantity ? figure(quantity->rmse_se) : "-");
     if (plain) row.push_back(quantity ? figure(ratio_to(plain, *quantity)) : "-");
+    if (const WayToBound way = way_to_bound(comparison)) {
+      const double share = way.share(summary, column.name);
+      row.push_back(std::isfinite(share) ? fmt::format("{:.3f}", share) : "-");
+    }
   }
   row.push_back(fmt::format("{}/{}", figure(summary.nees), summary.dimension));
   row.push_back(figure(summary.coverage95));

@@ -70,7 +70,7 @@ Way way_of(const ResultFigures& figures) {
 }
 
 double share_of_way(const Way& way, const ResultTracker& tracker, const std::string& quantity) {
-  if (!way.from || !way.to || !tracker.corrected) return kNaN;
+  if (!way.from || !way.to) return kNaN;
   const ResultQuantity* of = tracker.quantity(quantity);
   const ResultQuantity* from = way.from->quantity(quantity);
   const ResultQuantity* to = way.to->quantity(quantity);

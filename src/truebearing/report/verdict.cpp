@@ -6,6 +6,7 @@
 
 #include "truebearing/core/chi_square.hpp"
 #include "truebearing/evaluation/metric.hpp"
+#include "truebearing/evaluation/share_of_way.hpp"
 #include "truebearing/report/markup.hpp"
 
 namespace truebearing {
@@ -99,7 +100,7 @@ const ResultTracker* best_in(const ResultFigures& figures, const std::string& qu
 }
 
 double share_of_the_way(double a, double b, double bound) {
-  return bound < b ? kPercent * (b - a) / (b - bound) : kNaN;
+  return kPercent * share_of_way(a, b, bound);
 }
 
 std::string consistency(const ResultTracker& tracker, double runs) {

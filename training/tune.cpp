@@ -45,7 +45,7 @@ class TunedTracker {
     SharedTable configuration = spec_.configuration;
     for (const auto& [path, numbers] : values(logarithms)) configuration = with_numbers(*configuration, path, numbers);
     TableReader reader = tracker_reader(spec_, configuration, study_.path().string());
-    return make_tracker(spec_.kind, reader);
+    return make_tracker(spec_.kind, reader, &study_.scenario());
   }
 
  private:

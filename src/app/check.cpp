@@ -50,6 +50,7 @@ void check_study(const std::string& path) {
       fmt::print("    not ready: {}\n", missing.what());
     }
   }
+  fmt::print("{}", study.note());
 }
 
 void check(const CheckArguments& options) {

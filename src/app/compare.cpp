@@ -55,11 +55,11 @@ void run_compare(const CompareArguments& options) {
   }
   const std::vector<NamedScenario> scenarios =
       recorded ? std::vector<NamedScenario>{{options.truth, recorded.get()}} : study.evaluation_scenarios();
-  std::string notes;
+  std::string notes = study.note();
   for (const NamedScenario& named : scenarios)
     if (const std::string note = named.scenario->note(); !note.empty()) notes += note + "\n";
 
-  ComparisonOptions comparison_options = study.comparison_options();
+  ComparisonOptions comparison_options = study.comparison_options(recorded != nullptr);
   comparison_options.seed = seed;
   if (options.runs > 0) comparison_options.runs = options.runs;
   comparison_options.threads = options.threads;

@@ -191,7 +191,7 @@ struct Scored {
 
 Scored score(const Study& study, const TrackArguments& options, const TrackerSet& trackers,
              std::vector<Recording>& tracks, double epoch_s) {
-  ComparisonOptions comparison_options = study.comparison_options();
+  ComparisonOptions comparison_options = study.comparison_options(true);
   comparison_options.runs = tracks.size();
   comparison_options.threads = 1;
   comparison_options.details = options.report.wanted();

@@ -127,13 +127,15 @@ std::unique_ptr<Scenario> Study::recorded_scenario(const std::filesystem::path& 
   return std::make_unique<RecordedFile>(file, recorded_, *scenario_, path_, std::move(options));
 }
 
-ComparisonOptions Study::comparison_options() const {
+ComparisonOptions Study::comparison_options(bool on_records) const {
   ComparisonOptions options;
   options.seed = seed_;
   options.runs = runs_;
   options.scoring = scoring_.rule;
   options.pairs = scoring_.pairs;
-  options.bounds = scoring_.bounds;
+  for (const std::string& bound : scoring_.bounds)
+    if (!on_records || std::find(limits_.begin(), limits_.end(), bound) == limits_.end())
+      options.bounds.push_back(bound);
   options.cramer_rao = scoring_.timed.cramer_rao;
   options.angle_bound = scoring_.angle_bound;
   options.global_minimum = scoring_.timed.global_minimum;

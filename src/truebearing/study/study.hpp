@@ -80,13 +80,18 @@ class Study {
   /// correction is the study's to say, but a gate wants the box of its model.
   void check_model(const std::string& name, const CorrectionModel& model, const std::string& where) const;
 
-  /// Options of a comparison as the study has them.
-  ComparisonOptions comparison_options() const;
+  /// Options of a comparison as the study has them. On records the limits of the scenario's family are trackers as any
+  /// other.
+  ComparisonOptions comparison_options(bool on_records = false) const;
+
+  /// What whoever reads the results should know of its trackers, line by line; mostly nothing.
+  std::string note() const;
 
  private:
   Study() = default;
   void read(const StudyFile& file);
   void check_trackers();
+  void check_limit(const TrackerSpec& spec);
   void check_replay(const TrackerSpec& spec, const Tracker& tracker);
 
   std::filesystem::path path_;
@@ -102,6 +107,7 @@ class Study {
   std::size_t runs_ = 1000;
   std::size_t tuning_runs_ = 300;
   StudyScoring scoring_;
+  std::vector<std::string> limits_;  // trackers that know the scenario's family; bounds but on records
   std::filesystem::path parameters_path_;
   std::optional<ParametersFile> parameters_;
   std::vector<TrackerSpec> trackers_;

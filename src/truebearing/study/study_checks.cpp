@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What of a study cannot be right is refused when it is read, and a model that is not its own before it runs.
+#include <algorithm>
 #include <fmt/format.h>
 
 #include "truebearing/correction/feature_extractor.hpp"
 #include "truebearing/correction/model_file.hpp"
+#include "truebearing/study/limit_trackers.hpp"
 #include "truebearing/study/measured_check.hpp"
 #include "truebearing/study/study.hpp"
 #include "truebearing/study/tracker_registry.hpp"
@@ -17,9 +19,10 @@ void Study::check_trackers() {
     if (!spec.correction) {
       TableReader reader = tracker_reader(spec, spec.configuration, path_.string());
       ask_for_study_keys(reader);
-      const std::unique_ptr<Tracker> tracker = truebearing::make_tracker(spec.kind, reader);
+      const std::unique_ptr<Tracker> tracker = truebearing::make_tracker(spec.kind, reader, scenario_.get());
       check_replay(spec, *tracker);
       check_measured(*tracker, path_.string() + ": trackers." + spec.name, *scenario_, sets_);
+      if (spec.kind == kParticleLimit) check_limit(spec);
       continue;
     }
     for (const std::string& member : spec.correction->members())
@@ -34,7 +37,7 @@ void Study::check_trackers() {
     const auto made = [&](const std::string& name) {
       const TrackerSpec& member = tracker(name.empty() ? spec.correction->design.base : name);
       TableReader reader = tracker_reader(member, member.configuration, path_.string());
-      return truebearing::make_tracker(member.kind, reader);
+      return truebearing::make_tracker(member.kind, reader, scenario_.get());
     };
     try {
       FeatureExtractor(spec.correction->design.features, made("")->space(), spec.correction->design.frame,
@@ -43,6 +46,33 @@ void Study::check_trackers() {
       throw InputError(path_.string() + ": trackers." + spec.name + ": " + error.where(), error.found(), error.valid());
     }
   }
+}
+
+// What knows the family is a bound of it, named as one or not.
+void Study::check_limit(const TrackerSpec& spec) {
+  const std::string where = path_.string() + ": trackers." + spec.name;
+  for (const auto& [name, set] : sets_)
+    if (!are_one_family(*scenario_, *set))
+      throw InputError(where, "is the limit of the scenario's family, and the set \"" + name + "\" is of another",
+                       "sets that differ in their looks alone");
+  const bool is_named = std::find(scoring_.bounds.begin(), scoring_.bounds.end(), spec.name) != scoring_.bounds.end();
+  if (!is_limited(*scenario_)) {
+    if (is_named)
+      throw InputError(path_.string() + ": scoring.bounds",
+                       "names \"" + spec.name + "\", which does not model the recorder's jitter of the scenario",
+                       "no such bound, or a scenario without [jitter]");
+    return;
+  }
+  limits_.push_back(spec.name);
+  if (!is_named && spec.shown) scoring_.bounds.push_back(spec.name);
+}
+
+std::string Study::note() const {
+  std::string note;
+  for (const TrackerSpec& spec : trackers_)
+    if (spec.kind == kParticleLimit && spec.shown && !is_limited(*scenario_))
+      note += fmt::format("{}: is no bound here: it does not model the recorder's jitter\n", spec.name);
+  return note;
 }
 
 // A tracker that replays what measurements carry needs the logs of one.

@@ -54,7 +54,7 @@ std::unique_ptr<Tracker> Study::make_tracker(const std::string& name, const Corr
                                               spec.correction->bounds);
   }
   TableReader reader = tracker_reader(spec, configuration_of(name), path_.string());
-  return truebearing::make_tracker(spec.kind, reader);
+  return truebearing::make_tracker(spec.kind, reader, scenario_.get());
 }
 
 Ensemble Study::make_ensemble(const std::vector<std::string>& names) const {

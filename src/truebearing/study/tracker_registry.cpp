@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "truebearing/study/tracker_registry.hpp"
 
+#include <fmt/format.h>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "truebearing/study/angle_trackers.hpp"
 #include "truebearing/study/batch_trackers.hpp"
 #include "truebearing/study/filter_trackers.hpp"
+#include "truebearing/study/limit_trackers.hpp"
 #include "truebearing/study/passive_sonar_configuration.hpp"
 #include "truebearing/study/unfiltered_trackers.hpp"
 
@@ -40,11 +42,19 @@ Registry& registry() {
   return the_registry;
 }
 
+std::unique_ptr<Tracker> make_of_scenario(TableReader& configuration, const Scenario* scenario) {
+  if (!scenario)
+    throw configuration.error("kind", fmt::format("is \"{}\", which knows a study's scenario", kParticleLimit),
+                              "a tracker of a study");
+  return make_particle_limit(configuration, *scenario);
+}
+
 }  // namespace
 
 void register_tracker(const std::string& kind, TrackerMaker maker) {
   const std::lock_guard lock(registry().mutex);
-  if (kind.empty() || kind == "corrected" || !registry().makers.emplace(kind, std::move(maker)).second)
+  if (kind.empty() || kind == "corrected" || kind == kParticleLimit ||
+      !registry().makers.emplace(kind, std::move(maker)).second)
     throw InputError("register_tracker", "the kind \"" + kind + "\" is taken", "a new name");
 }
 
@@ -52,12 +62,15 @@ std::vector<std::string> tracker_kinds() {
   const std::lock_guard lock(registry().mutex);
   std::vector<std::string> kinds;
   for (const auto& [kind, maker] : registry().makers) kinds.push_back(kind);
+  kinds.emplace_back(kParticleLimit);
   return kinds;
 }
 
-std::unique_ptr<Tracker> make_tracker(const std::string& kind, TableReader& configuration) {
+std::unique_ptr<Tracker> make_tracker(const std::string& kind, TableReader& configuration, const Scenario* scenario) {
   TrackerMaker maker;
-  {
+  if (kind == kParticleLimit) {
+    maker = [scenario](TableReader& table) { return make_of_scenario(table, scenario); };
+  } else {
     const std::lock_guard lock(registry().mutex);
     if (const auto found = registry().makers.find(kind); found != registry().makers.end()) maker = found->second;
   }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "truebearing/io/table_reader.hpp"
+#include "truebearing/simulation/scenario.hpp"
 #include "truebearing/tracker/tracker.hpp"
 
 namespace truebearing {
@@ -20,8 +21,10 @@ using TrackerMaker = std::function<std::unique_ptr<Tracker>(TableReader& configu
 /// Adds a kind of tracker. Throws InputError where the name is taken.
 void register_tracker(const std::string& kind, TrackerMaker maker);
 
-/// Throws InputError that lists the valid kinds where there is none of that name.
-std::unique_ptr<Tracker> make_tracker(const std::string& kind, TableReader& configuration);
+/// Throws InputError that lists the valid kinds where there is none of that name. Kinds that know the family that a
+/// study's scenario draws from need that scenario, which only has to outlive the call.
+std::unique_ptr<Tracker> make_tracker(const std::string& kind, TableReader& configuration,
+                                      const Scenario* scenario = nullptr);
 
 std::vector<std::string> tracker_kinds();
 

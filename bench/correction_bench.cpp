@@ -66,16 +66,16 @@ CorrectionModel model(int rules) {
                            {FeatureKind::companion_difference, "position_m", "wide", 0.0, 0.0, 1000.0},
                            {FeatureKind::companion_difference, "velocity_mps", "wide", 0.0, 0.0, 100.0},
                            {FeatureKind::log_mean_nis, "", "", 0.0, 0.05, 1.0}};
-  model.network = FuzzyNetwork({.input_mean = Eigen::VectorXd::Zero(kFeatures),
-                                .input_scale = Eigen::VectorXd::Ones(kFeatures),
-                                .centres = spread(rules, kFeatures, 2.0),
-                                .widths = Eigen::MatrixXd::Constant(rules, kFeatures, 1.5),
-                                .consequents = spread(rules, 2, 1.0),
-                                .output_scale = Eigen::Vector2d(1000.0, 50.0)});
+  model.rules().network = FuzzyNetwork({.input_mean = Eigen::VectorXd::Zero(kFeatures),
+                                        .input_scale = Eigen::VectorXd::Ones(kFeatures),
+                                        .centres = spread(rules, kFeatures, 2.0),
+                                        .widths = Eigen::MatrixXd::Constant(rules, kFeatures, 1.5),
+                                        .consequents = spread(rules, 2, 1.0),
+                                        .output_scale = Eigen::Vector2d(1000.0, 50.0)});
   model.gate = BoxGate{Eigen::VectorXd::Constant(kFeatures, -10.0), Eigen::VectorXd::Constant(kFeatures, 10.0)};
-  model.inflation = Eigen::VectorXd::Constant(rules, 1.2);
-  model.usage = Eigen::VectorXd::Constant(rules, 1.0 / rules);
-  model.local_mean = Eigen::MatrixXd::Zero(rules, 2);
+  model.rules().inflation = Eigen::VectorXd::Constant(rules, 1.2);
+  model.rules().usage = Eigen::VectorXd::Constant(rules, 1.0 / rules);
+  model.rules().local_mean = Eigen::MatrixXd::Zero(rules, 2);
   return model;
 }
 

@@ -179,17 +179,18 @@ CorrectionModel model(int rules) {
     for (Eigen::Index i = 0; i < values.size(); ++i) values(i) = size * std::sin(12.9898 * static_cast<double>(i + 1));
     return values;
   };
-  model.network = FuzzyNetwork({.input_mean = Eigen::VectorXd::Zero(d),
-                                .input_scale = Eigen::VectorXd::Ones(d),
-                                .centres = spread(rules, d, 2.0),
-                                .widths = Eigen::MatrixXd::Constant(rules, d, 1.5),
-                                .consequents = spread(rules, 4, 1.0),
-                                .output_scale = Eigen::Vector4d(80.0, 80.0, 40.0, 40.0)});
+  model.rules().network = FuzzyNetwork({.input_mean = Eigen::VectorXd::Zero(d),
+                                        .input_scale = Eigen::VectorXd::Ones(d),
+                                        .centres = spread(rules, d, 2.0),
+                                        .widths = Eigen::MatrixXd::Constant(rules, d, 1.5),
+                                        .consequents = spread(rules, 4, 1.0),
+                                        .output_scale = Eigen::Vector4d(80.0, 80.0, 40.0, 40.0)});
   model.gate = BoxGate{Eigen::VectorXd::Constant(d, -20.0), Eigen::VectorXd::Constant(d, 20.0)};
-  model.moments = Eigen::MatrixXd::Zero(rules, 16);
-  for (Eigen::Index j = 0; j < rules; ++j) model.moments.row(j) = Eigen::Matrix4d::Identity().reshaped().transpose();
-  model.usage = Eigen::VectorXd::Constant(rules, 1.0 / rules);
-  model.local_mean = Eigen::MatrixXd::Zero(rules, 4);
+  model.rules().moments = Eigen::MatrixXd::Zero(rules, 16);
+  for (Eigen::Index j = 0; j < rules; ++j)
+    model.rules().moments.row(j) = Eigen::Matrix4d::Identity().reshaped().transpose();
+  model.rules().usage = Eigen::VectorXd::Constant(rules, 1.0 / rules);
+  model.rules().local_mean = Eigen::MatrixXd::Zero(rules, 4);
   return model;
 }
 

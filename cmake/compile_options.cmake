@@ -25,8 +25,8 @@ function(truebearing_harden target)
   target_compile_options(${target} PRIVATE -fstack-protector-strong)
   target_link_options(${target} PRIVATE -Wl,-z,relro,-z,now)
   get_target_property(type ${target} TYPE)
-  if(type MATCHES "STATIC|SHARED")
-    # In a static library too, so that a plugin can hold it. Our own calls stay direct, as in a program.
+  if(type MATCHES "STATIC|SHARED|MODULE")
+    # In a static library too, so that a module can hold it. Our own calls stay direct, as in a program.
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
     target_compile_options(${target} PRIVATE -fno-semantic-interposition)
   else()

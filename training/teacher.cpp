@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "truebearing/core/constants.hpp"
 #include "truebearing/core/error.hpp"
 #include "truebearing/core/suggestion.hpp"
 #include "truebearing/correction/correction_inputs.hpp"
@@ -19,11 +20,11 @@ namespace truebearing {
 namespace {
 
 // What is taught of the steps of one run: the numbers of a TeacherSet's rows (features, label, reference, the two
-// factors, intervals), one row after another.
+// factors, intervals, first of its track, taught, used), one row after another.
 using Rows = std::vector<double>;
 
 Eigen::Index row_size(Eigen::Index features, Eigen::Index state) {
-  return features + 2 * state + 2 * state * state + 3;
+  return features + 2 * state + 2 * state * state + 3 + 3;
 }
 
 void append(const auto& values, Rows& rows) {
@@ -34,8 +35,9 @@ void append(const auto& values, Rows& rows) {
 class RowMaker {
  public:
   RowMaker(const Ensemble& ensemble, const CorrectionSpec& correction, const StateSpace& truth_space,
-           std::vector<int> truth_index)
-      : ensemble_(ensemble.fresh()),
+           std::vector<int> truth_index, bool whole_tracks)
+      : whole_tracks_(whole_tracks),
+        ensemble_(ensemble.fresh()),
         from_step_(correction.training.from_step),
         every_s_(correction.training.every_s),
         truth_index_(std::move(truth_index)),
@@ -46,16 +48,19 @@ class RowMaker {
   }
 
   Rows rows(const Recording& recording) {
-    Rows rows;
+    std::vector<Rows> parts(whole_tracks_ ? recording.truth.size() : 1);
     ensemble_.reset();
     tracks_.assign(recording.truth.size(), {inputs_.extractor()});
     for (std::size_t step = 0; step < recording.measurements.size(); ++step) {
       ensemble_.step(recording.measurements[step]);
       for (std::size_t target = 0; target < tracks_.size(); ++target)
         if (const StepRecord* base = target_record(recording, target, ensemble_.records(inputs_.base())))
-          take(*base, recording.truth[target].x[step], static_cast<int>(step) + 1 >= from_step_, tracks_[target], rows);
+          take(*base, recording.truth[target].x[step], static_cast<int>(step) + 1 >= from_step_, tracks_[target],
+               parts[whole_tracks_ ? target : 0]);
     }
-    return rows;
+    for (std::size_t target = 1; target < parts.size(); ++target)
+      parts[0].insert(parts[0].end(), parts[target].begin(), parts[target].end());
+    return std::move(parts[0]);
   }
 
  private:
@@ -63,6 +68,7 @@ class RowMaker {
   struct Track {
     FeatureExtractor extractor;
     double next_s = -std::numeric_limits<double>::infinity();  // time of the next step to be taught
+    int last = -1;                                             // number of the track that its last row was of
   };
 
   std::size_t quantity(const std::string& name) const {
@@ -80,9 +86,10 @@ class RowMaker {
     CorrectionInputs::Features features;
     inputs_.extract(ensemble_, base, track.extractor, features);  // every step, for the averages
     const CorrectionInputs::Records step = inputs_.records(ensemble_, base.track);
-    if (!is_taught || base.time_s < track.next_s || !step.complete()) return;
+    is_taught = is_taught && base.time_s >= track.next_s;
+    if (!step.complete() || (whole_tracks_ ? !step.agree() || !features.allFinite() : !is_taught)) return;
     // The first step in every interval, so that steps of another period do not drift through it.
-    if (every_s_ > 0.0) track.next_s = every_s_ * (std::floor(base.time_s / every_s_) + 1.0);
+    if (is_taught && every_s_ > 0.0) track.next_s = every_s_ * (std::floor(base.time_s / every_s_) + 1.0);
     const OutputUnits units = inputs_.units(track.extractor, base);
     const BoundedVector truth = true_state(truth_index_);
     const BoundedVector label = units.output(truth - base.x);
@@ -90,16 +97,27 @@ class RowMaker {
         reference_covariance(units.output_covariance(step.reference->P));
     if (!features.allFinite() || !label.allFinite() || covariance.info() != Eigen::Success ||
         reference_covariance.info() != Eigen::Success || is_beyond(true_state, base))
-      return;
+      is_taught = false;
+    if (!is_taught && !whole_tracks_) return;
+    const bool begins = base.track != track.last;
+    track.last = base.track;
     append(features, rows);
+    if (!is_taught) {
+      rows.insert(rows.end(), static_cast<std::size_t>(2 * label.size() * (1 + label.size())), 0.0);
+      append(Eigen::Vector3d(kNaN, kNaN, kNaN), rows);
+      append(Eigen::Vector3d(begins, 0.0, base.status == StepStatus::ok), rows);
+      return;
+    }
     append(label, rows);
     append(units.output(step.reference->x - base.x), rows);
     append(BoundedMatrix(covariance.matrixL()), rows);
     append(BoundedMatrix(reference_covariance.matrixL()), rows);
     const Intervals& intervals = track.extractor.intervals();
     append(Eigen::Vector3d(intervals.shortest_s, intervals.longest_s, intervals.coast_s), rows);
+    append(Eigen::Vector3d(begins, 1.0, base.status == StepStatus::ok), rows);
   }
 
+  bool whole_tracks_;
   Ensemble ensemble_;
   int from_step_;
   double every_s_;
@@ -140,7 +158,8 @@ TeacherSet collect_teacher_set(const Ensemble& ensemble, const CorrectionSpec& c
   monte_carlo(
       runs, options.threads,
       [&](std::size_t run, std::size_t worker) {
-        if (!makers[worker]) makers[worker].emplace(ensemble, correction, scenario.truth_space(), truth_index);
+        if (!makers[worker])
+          makers[worker].emplace(ensemble, correction, scenario.truth_space(), truth_index, options.whole_tracks);
         by_run[run] = makers[worker]->rows(scenario.simulate({options.seed, options.role, run}));
       },
       options.progress);
@@ -151,9 +170,16 @@ TeacherSet collect_teacher_set(const Ensemble& ensemble, const CorrectionSpec& c
   for (const Rows& rows : by_run) total += static_cast<Eigen::Index>(rows.size()) / row_size(d, n);
   if (total == 0)
     throw InputError("training", "no step of the training runs can be taught", "records, truth and finite features");
-  TeacherSet set{correction.design.features, Eigen::MatrixXd(total, d),     Eigen::MatrixXd(total, n),
-                 Eigen::MatrixXd(total, n),  Eigen::MatrixXd(total, n * n), Eigen::MatrixXd(total, n * n),
-                 Eigen::MatrixXd(total, 3)};
+  TeacherSet set{correction.design.features,
+                 Eigen::MatrixXd(total, d),
+                 Eigen::MatrixXd(total, n),
+                 Eigen::MatrixXd(total, n),
+                 Eigen::MatrixXd(total, n * n),
+                 Eigen::MatrixXd(total, n * n),
+                 Eigen::MatrixXd(total, 3),
+                 {},
+                 {},
+                 {}};
   Eigen::Index next = 0;
   for (const Rows& rows : by_run) {
     const Eigen::Index count = static_cast<Eigen::Index>(rows.size()) / row_size(d, n);
@@ -163,6 +189,13 @@ TeacherSet collect_teacher_set(const Ensemble& ensemble, const CorrectionSpec& c
          {&set.X, &set.Y, &set.reference, &set.covariance_factors, &set.reference_factors, &set.intervals}) {
       matrix->middleRows(next, count) = columns.middleRows(part, matrix->cols()).transpose();
       part += matrix->cols();
+    }
+    if (options.whole_tracks) {
+      for (Eigen::Index row = 0; row < count; ++row) {
+        set.begins.push_back(columns(part, row) != 0.0 || row == 0);
+        set.taught.push_back(columns(part + 1, row) != 0.0);
+        set.used.push_back(columns(part + 2, row) != 0.0);
+      }
     }
     next += count;
   }

@@ -30,6 +30,12 @@ struct TeacherSet {
   /// (N x 3): the shortest and the longest of the base's last intervals, NaN before it has one, and the time that it
   /// has coasted; seconds.
   Eigen::MatrixXd intervals;
+  /// Of whole tracks, else empty: (N), whether a row is the first of its track, whether it is taught (where it is not, its
+  /// label, factors and reference are zero), and whether the base used a measurement there, which a network remembers.
+  std::vector<bool> begins, taught, used;
+
+  Eigen::Index rows() const { return X.rows(); }
+  bool is_taught(Eigen::Index row) const { return taught.empty() || taught[static_cast<std::size_t>(row)]; }
 };
 
 /// |L^-1 e| per row, for errors e (N x n) and lower factors L (N x n n): their Mahalanobis lengths (N).
@@ -40,6 +46,8 @@ struct TeacherOptions {
   Role role = Role::training;
   int threads = 0;
   Progress progress;
+  /// Every row that the network is asked at, one track behind the other, for networks that remember.
+  bool whole_tracks = false;
 };
 
 /// Runs `ensemble`, which has the members that `correction` names, over correction.training.runs runs of the scenario.

@@ -13,11 +13,16 @@
 #include "training/back_propagation.hpp"
 #include "training/covariance_inflation.hpp"
 #include "training/covariance_moments.hpp"
+#include "training/recurrent_training.hpp"
 #include "training/variable_projection.hpp"
 #include "truebearing/study/configuration_text.hpp"
 
 namespace truebearing {
 namespace {
+
+constexpr double kInputClip = 4.0;                 // of a recurrent network, in standard deviations
+constexpr double kLeastScale = 1e-9;               // of an output that never errs
+constexpr std::size_t kTrainingPerValidation = 8;  // runs
 
 FuzzyTrainingData training_data(const TeacherSet& teacher, const CorrectionSpec& spec, const StateSpace& space) {
   FuzzyTrainingData data{teacher.X, teacher.Y, {}, {}, {}, false};
@@ -55,14 +60,25 @@ double quantile_of(std::vector<double> values, double quantile) {
   return values[static_cast<std::size_t>(rank)];
 }
 
-// What the network says on the rows of the teacher set (N x n).
-Eigen::MatrixXd outputs(const TeacherSet& teacher, const FuzzyNetwork& network) {
-  Eigen::MatrixXd Y(teacher.Y.rows(), teacher.Y.cols());
-  FuzzyNetwork::Strengths phi;
-  for (Eigen::Index row = 0; row < Y.rows(); ++row) {
-    network.strengths(FuzzyNetwork::Inputs(teacher.X.row(row).transpose()), phi);
-    Y.row(row) = network.output(phi).transpose();
+// take(row, answer) for every row of the teacher set, of what the network says there.
+void for_each_answer(const TeacherSet& teacher, const Network& network, const auto& take) {
+  NetworkMemory kept = first_memory(network), memory;
+  NetworkAnswer said;
+  for (Eigen::Index row = 0; row < teacher.rows(); ++row) {
+    const auto i = static_cast<std::size_t>(row);
+    if (!teacher.begins.empty() && teacher.begins[i]) kept = first_memory(network);
+    memory = kept;
+    answer(network, NetworkInputs(teacher.X.row(row).transpose()), memory, said);
+    if (teacher.used.empty() || teacher.used[i]) kept = memory;
+    take(row, said);
   }
+}
+
+// (N x n)
+Eigen::MatrixXd outputs(const TeacherSet& teacher, const Network& network) {
+  Eigen::MatrixXd Y(teacher.Y.rows(), teacher.Y.cols());
+  for_each_answer(teacher, network,
+                  [&](Eigen::Index row, const NetworkAnswer& said) { Y.row(row) = said.y.transpose(); });
   return Y;
 }
 
@@ -104,20 +120,27 @@ IntervalBox interval_box(const Eigen::MatrixXd& intervals, const BoxSpec& spec) 
   return box;
 }
 
-Eigen::VectorXd disagreements(const TeacherSet& teacher, const Eigen::MatrixXd& corrections,
-                              const CorrectionModel& model) {
+// Of the taught rows.
+Eigen::VectorXd disagreements(const TeacherSet& teacher, const Network& network) {
   const Eigen::Index n = teacher.Y.cols();
-  Eigen::VectorXd values(teacher.X.rows());
-  FuzzyNetwork::Strengths phi;
-  for (Eigen::Index row = 0; row < values.size(); ++row) {
-    model.network.strengths(FuzzyNetwork::Inputs(teacher.X.row(row).transpose()), phi);
+  std::vector<double> values;
+  for_each_answer(teacher, network, [&](Eigen::Index row, const NetworkAnswer& said) {
+    if (!teacher.is_taught(row)) return;
     const BoundedMatrix source = teacher.covariance_factors.row(row).reshaped(n, n);
     const BoundedMatrix reference = teacher.reference_factors.row(row).reshaped(n, n);
-    values[row] =
-        disagreement((corrections.row(row) - teacher.reference.row(row)).transpose(),
-                     model.head_covariance(phi, source * source.transpose()), reference * reference.transpose());
-  }
-  return values;
+    values.push_back(disagreement(said.y - teacher.reference.row(row).transpose(),
+                                  said.covariance(source * source.transpose()), reference * reference.transpose()));
+  });
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+// e (N x n), each in the standard deviation that the covariance's source has of it; the rows of L are as long as those.
+Eigen::MatrixXd in_sigmas(const Eigen::MatrixXd& errors, const Eigen::MatrixXd& factors) {
+  const Eigen::Index n = errors.cols();
+  Eigen::MatrixXd normalised = errors;
+  for (Eigen::Index row = 0; row < errors.rows(); ++row)
+    normalised.row(row).array() /= factors.row(row).reshaped(n, n).rowwise().norm().transpose().array();
+  return normalised;
 }
 
 // The name of the file, the changes on one line.
@@ -127,71 +150,167 @@ std::string provenance_of(const ChangedScenario& changed) {
   return file.empty() ? changes : fmt::format("{} {}", file, changes);
 }
 
-}  // namespace
-
-// The covariance head, from rows of what the correction will meet.
-void fit_covariance(const TeacherSet& teacher, const Eigen::MatrixXd& corrections, const CorrectionSpec& spec,
-                    CorrectionModel& model) {
-  const Eigen::Index n = teacher.Y.cols();
-  const Eigen::MatrixXd errors = teacher.Y - corrections;
+// The covariance head of rules, from rows of what the correction will meet.
+void fit_covariance(const TeacherSet& met, const CorrectionSpec& spec, RuleBase& rules) {
+  const Eigen::Index n = met.Y.cols();
+  const Eigen::MatrixXd errors = met.Y - outputs(met, rules);
   if (!spec.design.covariance_moments) {
-    const Eigen::VectorXd lengths = mahalanobis_lengths(errors, teacher.covariance_factors);
-    model.inflation = covariance_inflation(model.network, teacher.X, lengths.cwiseAbs2() / static_cast<double>(n));
+    const Eigen::VectorXd lengths = mahalanobis_lengths(errors, met.covariance_factors);
+    rules.inflation = covariance_inflation(rules.network, met.X, lengths.cwiseAbs2() / static_cast<double>(n));
     return;
   }
-  // In standard deviations of the covariance's source: the rows of L are as long as those.
-  Eigen::MatrixXd normalised = errors;
-  for (Eigen::Index row = 0; row < errors.rows(); ++row)
-    normalised.row(row).array() /=
-        teacher.covariance_factors.row(row).reshaped(n, n).rowwise().norm().transpose().array();
   std::vector<int> output_parity;
   if (spec.training.mirror == TrainingSpec::Mirror::pairs)
     for (int i = 0; i < static_cast<int>(n); ++i) output_parity.push_back(component_parity(spec.design.frame, i));
-  model.moments = covariance_moments(model.network, teacher.X, normalised, output_parity);
+  rules.moments = covariance_moments(rules.network, met.X, in_sigmas(errors, met.covariance_factors), output_parity);
 }
+
+// What a kind of network is taught with: `teacher` for what it says, `met` for how sure it is, `validation` to know when
+// it is best.
+struct Lessons {
+  const TeacherSet& teacher;
+  const TeacherSet& met;
+  const TeacherSet& validation;
+  const StateSpace& space;
+};
+
+Network train_rules(const Lessons& lessons, const CorrectionSpec& spec, const TrainOptions& options,
+                    TrainReport& report) {
+  TrainedFuzzyNetwork trained =
+      train_network(training_data(lessons.teacher, spec, lessons.space), spec.training, options);
+  report.cost = trained.cost;
+  RuleBase rules;
+  rules.network = FuzzyNetwork(std::move(trained.parameters));
+  rules.usage = trained.usage;
+  rules.local_mean = trained.local_mean;
+  fit_covariance(lessons.met, spec, rules);
+  return rules;
+}
+
+// As the network sees them.
+RecurrentRows recurrent_rows(const TeacherSet& teacher, const GatedRecurrent::Parameters& scales,
+                             const FuzzyTrainingData& data) {
+  RecurrentRows rows;
+  rows.inputs = ((teacher.X.transpose().colwise() - scales.input_mean).array().colwise() / scales.input_scale.array())
+                    .cwiseMin(scales.input_clip)
+                    .cwiseMax(-scales.input_clip)
+                    .cast<float>();
+  rows.targets = (teacher.Y.transpose().array().colwise() / scales.output_scale.array()).cast<float>();
+  rows.begins = teacher.begins;
+  rows.taught = teacher.taught;
+  rows.used = teacher.used;
+  if (data.mirrored()) {
+    rows.parity = Eigen::Map<const Eigen::VectorXi>(data.parity.data(), teacher.X.cols()).cast<float>();
+    rows.out_parity = data.output_signs().cast<float>();
+  }
+  return rows;
+}
+
+Network train_recurrent(const Lessons& lessons, const CorrectionSpec& spec, const TrainOptions& options,
+                        TrainReport& report) {
+  const RecurrentModule module = recurrent_module(options.torch_folder);
+  const FuzzyTrainingData data = training_data(lessons.teacher, spec, lessons.space);
+  const FuzzyNetwork::Parameters normalised = normalisation(data, kInputClip);
+  GatedRecurrent::Parameters parameters;
+  parameters.input_mean = normalised.input_mean;
+  parameters.input_scale = normalised.input_scale;
+  parameters.input_clip = normalised.input_clip;
+  // Of the taught rows: the others' labels are zero.
+  const std::vector<bool>& is_taught = lessons.teacher.taught;
+  const auto taught = static_cast<double>(std::count(is_taught.begin(), is_taught.end(), true));
+  parameters.output_scale =
+      (data.labels.colwise().squaredNorm().transpose() / taught).cwiseSqrt().cwiseMax(kLeastScale);
+  const RecurrentRows rows = recurrent_rows(lessons.teacher, parameters, data);
+  report.cost = module.train(rows, recurrent_rows(lessons.validation, parameters, data),
+                             {.units = spec.training.units,
+                              .epochs = spec.training.epochs,
+                              .batch = spec.training.batch,
+                              .learning_rate = spec.training.learning_rate,
+                              .seed = options.seed,
+                              .two_threads = options.threads != 1},
+                             options.training_progress, parameters);
+  const Eigen::Index n = lessons.space.size(), entries = n * (n + 1) / 2;
+  parameters.covariance_weight = Eigen::MatrixXf::Zero(entries, spec.training.units);
+  parameters.covariance_bias = Eigen::VectorXf::Zero(entries);
+  const Eigen::MatrixXd errors = lessons.met.Y - outputs(lessons.met, GatedRecurrent(parameters));
+  Eigen::MatrixXf sigmas = in_sigmas(errors, lessons.met.covariance_factors).transpose().cast<float>();
+  for (Eigen::Index row = 0; row < sigmas.cols(); ++row)
+    if (!lessons.met.is_taught(row)) sigmas.col(row).setZero();
+  module.fit_covariance(recurrent_rows(lessons.met, parameters, data), sigmas, options.seed, {}, parameters);
+  return GatedRecurrent(std::move(parameters));
+}
+
+// The taught rows of a set of whole tracks, without what makes tracks of them; any other set as it is.
+TeacherSet taught_rows(const TeacherSet& teacher) {
+  if (teacher.taught.empty()) return teacher;
+  std::vector<Eigen::Index> rows;
+  for (Eigen::Index row = 0; row < teacher.rows(); ++row)
+    if (teacher.is_taught(row)) rows.push_back(row);
+  const auto of = [&](const Eigen::MatrixXd& all) { return Eigen::MatrixXd(all(rows, Eigen::all)); };
+  return {teacher.features,
+          of(teacher.X),
+          of(teacher.Y),
+          of(teacher.reference),
+          of(teacher.covariance_factors),
+          of(teacher.reference_factors),
+          of(teacher.intervals),
+          {},
+          {},
+          {}};
+}
+
+}  // namespace
 
 CorrectionModel train_correction(const Study& study, const std::string& name, const TrainOptions& options,
                                  TrainReport* report) {
   const CorrectionSpec& spec = study.tracker(name).correction.value();
   const Ensemble ensemble = study.make_ensemble(spec.design.members());
   const StateSpace& space = ensemble.tracker(ensemble.index(spec.design.base)).space();
-  const TeacherOptions teacher_options{options.seed, Role::training, options.threads, options.teacher_progress};
+  const bool recurrent = spec.design.network == NetworkKind::recurrent;
+  if (recurrent) recurrent_module(options.torch_folder);  // said before the work where there is none
+  TeacherOptions teacher_options{options.seed, Role::training, options.threads, options.teacher_progress, recurrent};
   const std::unique_ptr<Scenario> taught = spec.training.scenario ? study.scenario(*spec.training.scenario) : nullptr;
-  const TeacherSet teacher = collect_teacher_set(ensemble, spec, taught ? *taught : study.scenario(), teacher_options);
-  const FuzzyTrainingData data = training_data(teacher, spec, space);
-  const auto begin = std::chrono::steady_clock::now();
-  TrainedFuzzyNetwork trained = train_network(data, spec.training, options);
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
+  const Scenario& scenario = taught ? *taught : study.scenario();
+  const TeacherSet teacher = collect_teacher_set(ensemble, spec, scenario, teacher_options);
+  // Covariance and gate from the wider family, where there is one.
+  std::optional<TeacherSet> wider, validation;
+  if (spec.training.covariance_scenario)
+    wider = collect_teacher_set(ensemble, spec, *study.scenario(*spec.training.covariance_scenario), teacher_options);
+  if (recurrent) {
+    CorrectionSpec fewer = spec;
+    fewer.training.runs = std::max<std::size_t>(1, spec.training.runs / kTrainingPerValidation);
+    teacher_options.role = Role::validation;
+    validation = collect_teacher_set(ensemble, fewer, scenario, teacher_options);
+  }
+  const TeacherSet& met = wider ? *wider : teacher;
+  const Lessons lessons{teacher, met, validation ? *validation : teacher, space};
 
   CorrectionModel model;
   model.space = &space;
   model.design = spec.design;
   for (const std::string& member : spec.design.members()) model.trackers[member] = study.configuration_line(member);
-  model.network = FuzzyNetwork(std::move(trained.parameters));
+  TrainReport found;
+  const auto begin = std::chrono::steady_clock::now();
+  model.network =
+      recurrent ? train_recurrent(lessons, spec, options, found) : train_rules(lessons, spec, options, found);
+  found.training_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
-  // Covariance and gate from the wider family, where there is one.
-  std::optional<TeacherSet> wider;
-  if (spec.training.covariance_scenario)
-    wider = collect_teacher_set(ensemble, spec, *study.scenario(*spec.training.covariance_scenario), teacher_options);
-  const TeacherSet& met = wider ? *wider : teacher;
-  const Eigen::MatrixXd corrections = outputs(met, model.network);
-  fit_covariance(met, corrections, spec, model);
   const bool trusts_another = spec.design.reference != spec.design.base;
-  model.gate = box_gate(training_data(met, spec, space),
-                        trusts_another ? disagreements(met, corrections, model) : Eigen::VectorXd(), spec.box);
-  model.gate->intervals = interval_box(met.intervals, spec.box);
-  model.usage = trained.usage;
-  model.local_mean = trained.local_mean;
+  const TeacherSet filled = taught_rows(met);
+  model.gate = box_gate(training_data(filled, spec, space),
+                        trusts_another ? disagreements(met, model.network) : Eigen::VectorXd(), spec.box);
+  model.gate->intervals = interval_box(filled.intervals, spec.box);
+  found.rows = recurrent ? std::count(teacher.taught.begin(), teacher.taught.end(), true) : teacher.rows();
   model.provenance = {{"study", study.name()},
                       {"tracker", name},
                       {"seed", fmt::format("{}", options.seed)},
                       {"training_runs", fmt::format("{}", spec.training.runs)},
-                      {"training_rows", fmt::format("{}", teacher.X.rows())},
+                      {"training_rows", fmt::format("{}", found.rows)},
                       {"bounds", describe(spec.bounds)}};
   if (taught) model.provenance["scenario"] = provenance_of(*spec.training.scenario);
   if (wider) model.provenance["covariance_scenario"] = provenance_of(*spec.training.covariance_scenario);
   model.validate();
-  if (report) *report = {teacher.X.rows(), trained.cost, elapsed.count()};
+  if (report) *report = found;
   return model;
 }
 

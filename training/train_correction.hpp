@@ -2,6 +2,7 @@
 // From a study to a trained correction: teacher set -> network -> gate and covariance -> model.
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include "training/fuzzy_training.hpp"
@@ -16,6 +17,7 @@ struct TrainOptions {
   int threads = 0;                     ///< for the teacher's runs; the network itself is trained on one thread
   Progress teacher_progress;           ///< runs done
   TrainingProgress training_progress;  ///< iterations done
+  std::filesystem::path torch_folder = {};  ///< of the module that teaches recurrent networks; empty: recurrent_module()
 };
 
 struct TrainReport {

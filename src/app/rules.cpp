@@ -17,7 +17,10 @@ void add_rules(const Subcommands& all) {
     const CorrectionModel model = read_model_file(*path);
     fmt::print("{} corrects {} towards the truth; trusted: {}\n", *path, model.design.base, model.design.reference);
     for (const auto& [key, value] : model.provenance) fmt::print("  {}: {}\n", key, value);
-    fmt::print("\n{}", rule_sentences(model));
+    if (std::holds_alternative<RuleBase>(model.network))
+      fmt::print("\n{}", rule_sentences(model));
+    else
+      fmt::print("\nA recurrent network of {}: it holds no rules.\n", describe(model.network));
   });
 }
 

@@ -45,7 +45,14 @@ void train(const TrainArguments& options) {
   const CorrectionModels models =
       train_study(study, names, {options.seed.value_or(study.seed()), options.threads, options.quiet});
   for (std::size_t i = 0; i < names.size(); ++i) {
-    write_output(outputs[i], model_text(*models.at(names[i])));
+    const CorrectionModel& model = *models.at(names[i]);
+    if (weights_name(model).empty()) {
+      write_output(outputs[i], model_text(model));
+    } else if (is_standard_output(outputs[i])) {
+      throw InputError("-o", "is one stream, and the model two files", "a file's name");
+    } else {
+      write_model_file(outputs[i], model);
+    }
     if (!is_standard_output(outputs[i])) fmt::print("written: {}\n", outputs[i]);
   }
 }

@@ -115,7 +115,7 @@ CorrectionModels train_study(const Study& study, const std::vector<std::string>&
     model.provenance["validation"] =
         fmt::format("{} runs: {}", kValidationRuns, validation_scores(study, name, trained, options));
     if (!options.quiet)
-      say(fmt::format("trained {}: {} rules on {} steps in {:.2f} s; validation, {}", name, model.network.rules(),
+      say(fmt::format("trained {}: {} on {} steps in {:.2f} s; validation, {}", name, describe(model.network),
                       report.rows, report.training_seconds, model.provenance["validation"]));
     models[name] = std::make_shared<const CorrectionModel>(std::move(model));
   }

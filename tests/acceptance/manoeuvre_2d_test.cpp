@@ -38,6 +38,12 @@ TEST(Manoeuvre2d, CorrectionBeatsTunedFilterAndMultipleModels) {
   expect_below(comparison, "imm6", 84.5, 30.8);
   expect_below(comparison, "nfnn", 82.5, 29.0);
   expect_below(comparison, "imm6_nfnn", 78.0, 27.0);
+  expect_below(comparison, "gru", 74.0, 25.3);
+  expect_better(comparison, "gru", "imm6_nfnn");
+  const TrackerSummary& gru = *comparison.tracker("gru");
+  EXPECT_GT(gru.nees, 3.4);
+  EXPECT_LT(gru.nees, 4.4);
+  EXPECT_GT(gru.coverage95, 0.92);
   expect_better(comparison, "nfnn", "tuned");
   expect_better(comparison, "nfnn", "imm6");
   expect_better(comparison, "imm6_nfnn", "imm6");
@@ -53,7 +59,8 @@ TEST(Manoeuvre2d, OutsideTheFamilyTheCorrectionIsNoWorseThanTheReference) {
   for (const auto& [name, set] : comparison.sets)
     for (const char* quantity : {"position_m", "velocity_mps"}) {
       SCOPED_TRACE(name);
-      expect_no_worse(set, "nfnn", "tuned", quantity, 0.02 * set.tracker("tuned")->quantity(quantity)->rmse);
+      for (const char* corrected : {"nfnn", "gru"})
+        expect_no_worse(set, corrected, "tuned", quantity, 0.02 * set.tracker("tuned")->quantity(quantity)->rmse);
     }
 }
 

@@ -9,7 +9,7 @@
 #include "tests/support/correction_models.hpp"
 #include "tests/support/fakes.hpp"
 #include "tests/support/line_trackers.hpp"
-#include "tests/support/plane_trackers.hpp"
+#include "tests/support/recurrent_models.hpp"
 #include "truebearing/core/constants.hpp"
 #include "truebearing/correction/corrected_tracker.hpp"
 #include "truebearing/evaluation/tracker_set.hpp"
@@ -125,6 +125,16 @@ TEST(ParticleLimit, StepsAllocateNothing) {
 
 TEST(CorrectedTracker, StepsInThePlaneAllocateNothing) {
   CorrectedTracker tracker(testing::plane_ensemble(), testing::shared(testing::plane_model(1)));
+  const std::vector<Measurement> log = testing::plane_log(1, 100);
+  for (int k = 0; k < 5; ++k) tracker.step(log[static_cast<std::size_t>(k)]);
+  EXPECT_EQ(allocations_of([&] {
+              for (std::size_t k = 5; k < log.size(); ++k) tracker.step(log[k]);
+            }),
+            0);
+}
+
+TEST(GatedRecurrent, StepsAllocateNothing) {
+  CorrectedTracker tracker(testing::plane_ensemble(), testing::shared(testing::recurrent_plane_model(1)));
   const std::vector<Measurement> log = testing::plane_log(1, 100);
   for (int k = 0; k < 5; ++k) tracker.step(log[static_cast<std::size_t>(k)]);
   EXPECT_EQ(allocations_of([&] {

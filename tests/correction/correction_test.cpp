@@ -81,7 +81,7 @@ CorrectionModel radar_model(std::uint64_t run) {
   parameters.input_mean = Eigen::Vector4d(4.0, 0.0, 0.0, 0.0);
   parameters.output_scale = Eigen::Vector2d(2000.0, 100.0);
   CorrectionModel model = line_model(radar_features(), parameters, "plain", "tuned", "wide");
-  model.inflation = Eigen::VectorXd::NullaryExpr(16, [&] { return random.uniform(0.5, 2.0); });
+  model.rules().inflation = Eigen::VectorXd::NullaryExpr(16, [&] { return random.uniform(0.5, 2.0); });
   model.gate = box(4, -3.0, 6.0);
   return model;
 }
@@ -93,7 +93,7 @@ TEST(Correction, IsTheReferencePlusTheLimitedDifference) {
   s.reference->record.P = BoundedVector(Eigen::Vector2d(4.0, 1.0)).asDiagonal();
   s.source->record.P = BoundedVector(Eigen::Vector2d(2.0, 0.5)).asDiagonal();
   CorrectionModel model = line_model(kResidual, constant(1, {5.0, -2.0}), "base", "reference", "source");
-  model.inflation[0] = 1.5;
+  model.rules().inflation[0] = 1.5;
   Correction free(shared(model), s.ensemble, {.kappa = kInfinity});
   Correction limited(shared(model), s.ensemble, {.kappa = 1.0});
   s.ensemble.step(position(1.0, 0.0));
@@ -121,7 +121,7 @@ TEST(Correction, HandOverCovarianceIsThatOfTheMixture) {
     s.reference->record.P << 4.0, 0.5, 0.5, 1.0;
     s.source->record.P << 2.0, -0.3, -0.3, 0.5;
     CorrectionModel model = line_model(kResidual, constant(1, {5.0, -2.0}), "base", "reference", "source");
-    model.inflation[0] = 1.5;
+    model.rules().inflation[0] = 1.5;
     model.gate = box(1, -1.0, 1.0);
     Correction correction(shared(model), s.ensemble);
     s.ensemble.step(position(1.0, 0.0));
@@ -262,7 +262,7 @@ TEST(Correction, PublishedEstimateIsFiniteAndWithinKappaOfTheReference) {
     } catch (const InputError&) {
       continue;  // refused when the file is read: all the better
     }
-    if (wild) spoil(model.inflation, positive);
+    if (wild) spoil(model.rules().inflation, positive);
     const bool bounded = model_number % 10 != 9;
     const double kappa = bounded ? std::pow(10.0, random.uniform(-2.0, 3.0)) : kInfinity;
     if (random.uniform() < 0.5)
@@ -344,11 +344,11 @@ TEST(Correction, ZeroNetworkOnTheBaseIsThePlainTrackerToTheBit) {
 TEST(Correction, OrderOfTheRulesChangesNothing) {
   const CorrectionModel model = radar_model(1);
   CorrectionModel turned = model;
-  FuzzyNetwork::Parameters parameters = model.network.parameters();
+  FuzzyNetwork::Parameters parameters = model.rules().network.parameters();
   for (Eigen::MatrixXd* rows : {&parameters.centres, &parameters.widths, &parameters.consequents})
     *rows = rows->colwise().reverse().eval();
-  turned.network = FuzzyNetwork(parameters);
-  turned.inflation = model.inflation.reverse().eval();
+  turned.rules().network = FuzzyNetwork(parameters);
+  turned.rules().inflation = model.rules().inflation.reverse().eval();
   CorrectedTracker a(radar_ensemble(), shared(model)), b(radar_ensemble(), shared(turned));
   for (const Measurement& measurement : radar_log(1, 240)) {
     const StepRecord first = a.step(measurement)[0], second = b.step(measurement)[0];
@@ -458,7 +458,7 @@ TEST(Correction, ModelWhosePartsDisagreeIsRefused) {
   bad.design.features.push_back({.kind = FeatureKind::log_step});
   EXPECT_THAT(error_message([&] { Correction(shared(bad), ensemble); }), HasSubstr("features"));
   bad = good;
-  bad.inflation[0] = 0.0;
+  bad.rules().inflation[0] = 0.0;
   EXPECT_THAT(error_message([&] { Correction(shared(bad), ensemble); }), HasSubstr("inflation"));
   EXPECT_THAT(error_message([&] { Correction(shared(good), ensemble, {.kappa = 0.0}); }), HasSubstr("kappa"));
   bad = good;

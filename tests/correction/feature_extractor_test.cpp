@@ -310,7 +310,7 @@ TEST(FeatureExtractor, NumberOfFeaturesIsBounded) {
 }
 
 TEST(Feature, NamesGoThereAndBackAndMisspeltOnesAreSuggested) {
-  EXPECT_EQ(feature_kind_names().size(), 25u);
+  EXPECT_EQ(feature_kind_names().size(), 26u);
   for (const std::string& name : feature_kind_names()) EXPECT_EQ(to_string(feature_kind(name)), name);
   EXPECT_THAT(error_message([] { feature_kind("inovation"); }), HasSubstr("did you mean \"innovation\""));
 }

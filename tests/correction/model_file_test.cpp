@@ -27,9 +27,10 @@ CorrectionModel model_to_save() {
                                               "plain", "tuned", "wide");
   model.design.features.back() = {.kind = FeatureKind::innovation_average, .companion = "wide", .alpha = 1.0 / 3.0};
   model.gate = testing::box(4, -1.0 / 3.0, 1e-300, 2.5);
-  model.inflation = Eigen::VectorXd::NullaryExpr(5, [&] { return std::pow(10.0, random.uniform(-300.0, 300.0)); });
-  model.usage = Eigen::VectorXd::NullaryExpr(5, [&] { return random.uniform(); });
-  model.local_mean = Eigen::MatrixXd::NullaryExpr(5, 2, [&] { return 1e3 * random.normal(); });
+  model.rules().inflation =
+      Eigen::VectorXd::NullaryExpr(5, [&] { return std::pow(10.0, random.uniform(-300.0, 300.0)); });
+  model.rules().usage = Eigen::VectorXd::NullaryExpr(5, [&] { return random.uniform(); });
+  model.rules().local_mean = Eigen::MatrixXd::NullaryExpr(5, 2, [&] { return 1e3 * random.normal(); });
   model.trackers["plain"] = "kalman {start = {kind = \"prior\"}} \\ \t \u00e9";
   model.provenance = {{"study", "\"quoted\"\nand broken"}, {"seed", "1"}};
   return model;
@@ -50,11 +51,11 @@ TEST(ModelFile, SaveLoadSaveIsByteIdentical) {
   const CorrectionModel loaded = parse_model(saved, "model.json");
   EXPECT_EQ(model_text(loaded), saved);
   const CorrectionModel original = model_to_save();
-  EXPECT_EQ(loaded.network.parameters(), original.network.parameters());
+  EXPECT_EQ(loaded.rules().network.parameters(), original.rules().network.parameters());
   EXPECT_EQ(loaded.gate, original.gate);
   EXPECT_EQ(loaded.design.features, original.design.features);
   EXPECT_EQ(loaded.trackers, original.trackers);
-  EXPECT_EQ(loaded.inflation, original.inflation);
+  EXPECT_EQ(loaded.rules().inflation, original.rules().inflation);
 }
 
 TEST(ModelFile, FeaturesOfANeighbourAreKept) {
@@ -271,7 +272,7 @@ TEST(ModelFile, AlteredAnyhowItIsRefusedOrValid) {
     try {
       const CorrectionModel model = parse_model(text, "model.json");
       model.validate();
-      ASSERT_TRUE(model.network.parameters().consequents.allFinite());
+      ASSERT_TRUE(model.rules().network.parameters().consequents.allFinite());
       ASSERT_EQ(model_text(parse_model(model_text(model), "again.json")), model_text(model));
     } catch (const InputError&) {
       ++refused;

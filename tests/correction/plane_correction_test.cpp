@@ -142,8 +142,8 @@ TEST(PlaneCorrection, ModelFileKeepsEverything) {
   EXPECT_EQ(differences(loaded.design, model.design), "");
   EXPECT_EQ(loaded.design.frame, Frame::track);
   EXPECT_TRUE(loaded.design.output_in_sigma);
-  EXPECT_EQ(loaded.moments, model.moments);
-  EXPECT_EQ(loaded.inflation.size(), 0);
+  EXPECT_EQ(loaded.rules().moments, model.rules().moments);
+  EXPECT_EQ(loaded.rules().inflation.size(), 0);
 }
 
 TEST(PlaneCorrection, ModelFileKeepsTheIntervalsThatWereTaughtAndRefusesThoseThatAreNone) {
@@ -161,10 +161,10 @@ TEST(PlaneCorrection, ModelFileKeepsTheIntervalsThatWereTaughtAndRefusesThoseTha
 
 TEST(PlaneCorrection, MomentsThatAreNoCovarianceAreRefused) {
   CorrectionModel model = plane_model(6);
-  model.moments(2, 0) = -1.0;
+  model.rules().moments(2, 0) = -1.0;
   EXPECT_THROW(model.validate(), InputError);
   model = plane_model(6);
-  model.inflation = Eigen::VectorXd::Ones(8);
+  model.rules().inflation = Eigen::VectorXd::Ones(8);
   EXPECT_THROW(model.validate(), InputError);
   model.design.covariance_moments = false;
   EXPECT_THROW(model.validate(), InputError) << "with both heads, whichever the design names";

@@ -41,8 +41,8 @@ TEST(RuleReport, SentencesSayConditionsOutputUsageAndTeacher) {
       {{.kind = FeatureKind::gain, .component = "position_m"},
        {.kind = FeatureKind::companion_difference, .component = "velocity_mps", .companion = "wide", .scale = 1.0}},
       parameters);
-  model.usage = Eigen::Vector2d(0.25, 0.75);
-  model.local_mean << -900.0, -45.0, 2710.0, 140.0;
+  model.rules().usage = Eigen::Vector2d(0.25, 0.75);
+  model.rules().local_mean << -900.0, -45.0, 2710.0, 140.0;
   EXPECT_EQ(
       rule_sentences(model),
       "1. IF gain in position_m is MEDIUM AND difference of wide in velocity_mps is LARGE POSITIVE THEN add +2890 m, "

@@ -48,10 +48,11 @@ inline CorrectionModel line_model(std::vector<FeatureSpec> features, FuzzyNetwor
   for (const std::string& name : {base, reference, covariance_of}) model.trackers[name] = "made by hand";
   model.design.features = std::move(features);
   const Eigen::Index rules = parameters.centres.rows();
-  model.network = FuzzyNetwork(std::move(parameters));
-  model.inflation = Eigen::VectorXd::Ones(rules);
-  model.usage = Eigen::VectorXd::Constant(rules, 1.0 / static_cast<double>(rules));
-  model.local_mean = Eigen::MatrixXd::Zero(rules, line_space().size());
+  model.network = RuleBase{.network = FuzzyNetwork(std::move(parameters)),
+                           .inflation = Eigen::VectorXd::Ones(rules),
+                           .moments = {},
+                           .usage = Eigen::VectorXd::Constant(rules, 1.0 / static_cast<double>(rules)),
+                           .local_mean = Eigen::MatrixXd::Zero(rules, line_space().size())};
   return model;
 }
 

@@ -73,16 +73,17 @@ inline CorrectionModel plane_model(std::uint64_t seed, double size = 1.0) {
   model.design.features.insert(model.design.features.end(), {difference, mode});
   FuzzyNetwork::Parameters parameters = random_parameters(random, 6, 8, 4);
   parameters.consequents *= size;
-  model.network = FuzzyNetwork(std::move(parameters));
+  RuleBase& rules = model.rules();
+  rules.network = FuzzyNetwork(std::move(parameters));
   model.gate = box(6, -50.0, 50.0);
-  model.moments.resize(8, 16);
+  rules.moments.resize(8, 16);
   for (Eigen::Index j = 0; j < 8; ++j) {
     const Eigen::Matrix4d A = Eigen::Matrix4d::NullaryExpr([&] { return random.normal(); });
     const Eigen::Matrix4d square = A * A.transpose();
-    model.moments.row(j) = square.reshaped().transpose();
+    rules.moments.row(j) = square.reshaped().transpose();
   }
-  model.usage = Eigen::VectorXd::Constant(8, 0.125);
-  model.local_mean = Eigen::MatrixXd::Zero(8, 4);
+  rules.usage = Eigen::VectorXd::Constant(8, 0.125);
+  rules.local_mean = Eigen::MatrixXd::Zero(8, 4);
   return model;
 }
 

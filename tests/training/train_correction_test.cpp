@@ -37,7 +37,7 @@ TEST(TrainCorrection, ModelRemembersWhatItWasTrainedFor) {
   TrainReport report;
   const CorrectionModel model = train(study, 5, 0, &report);
   EXPECT_EQ(report.rows, 20 * 40);
-  EXPECT_EQ(model.network.rules(), 4);
+  EXPECT_EQ(model.rules().network.rules(), 4);
   EXPECT_EQ(model.design, study.tracker("nfnn").correction->design);
   EXPECT_EQ(model.design.base, "plain");
   EXPECT_EQ(model.design.reference, "tuned");

@@ -23,4 +23,9 @@ class InputError : public std::runtime_error {
   std::string valid_;
 };
 
+/// Throws InputError unless `valid`.
+inline void require_valid(bool valid, const char* where, const std::string& found, const std::string& wanted) {
+  if (!valid) throw InputError(where, found, wanted);
+}
+
 }  // namespace truebearing

@@ -87,7 +87,7 @@ Correction::Correction(std::shared_ptr<const CorrectionModel> model, const Ensem
 }
 
 void Correction::reset() {
-  tracks_.assign(1, Track{-1, false, inputs_.extractor(), {}, {}});
+  tracks_.assign(1, Track{-1, false, inputs_.extractor(), first_memory(model_->network), {}, {}});
   records_.assign(1, StepRecord{});
 }
 
@@ -95,7 +95,8 @@ Correction::Track& Correction::track_of(int id) {
   auto slot = std::find_if(tracks_.begin(), tracks_.end(), [&](const Track& t) { return t.id == id; });
   if (slot == tracks_.end()) {
     slot = std::find_if(tracks_.begin(), tracks_.end(), [](const Track& t) { return !t.seen; });
-    if (slot == tracks_.end()) slot = tracks_.insert(tracks_.end(), Track{id, true, inputs_.extractor(), {}, {}});
+    if (slot == tracks_.end()) slot = tracks_.insert(tracks_.end(), Track{id, true, inputs_.extractor(), {}, {}, {}});
+    slot->memory = first_memory(model_->network);
     slot->referee = slot->handover = {};
   }
   slot->id = id;
@@ -155,10 +156,13 @@ void Correction::correct_record(const CorrectionInputs::Records& step, Track& tr
   corrected.correction->handed_over = handed_over_;
   if (!features_.allFinite() || !step.agree()) return;  // g = 0
 
-  model_->network.strengths(features_, phi_);
+  // What it remembers are the steps that used a measurement: one that used none leaves no trace.
+  memory_ = track.memory;
+  answer(model_->network, features_, memory_, answer_);
+  if (base.status == StepStatus::ok) track.memory = memory_;
   const OutputUnits units = inputs_.units(track.extractor, base);
-  const BoundedVector wanted = base.x + units.state(model_->network.output(phi_)) - reference.x;
-  const BoundedMatrix P_c = units.in_frame(model_->head_covariance(phi_, units.in_frame(step.source->P)));
+  const BoundedVector wanted = base.x + units.state(answer_.y) - reference.x;
+  const BoundedMatrix P_c = units.in_frame(answer_.covariance(units.in_frame(step.source->P)));
   const SafeDistance distance(reference.P);
   const Limited limited = limit_kappa(distance, wanted, bounds_.kappa);
   const BoundedVector& d = limited.d;

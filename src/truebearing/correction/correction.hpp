@@ -39,6 +39,7 @@ class Correction {
     int id;
     bool seen;
     FeatureExtractor extractor;
+    NetworkMemory memory;
     Referee referee;   // of the corrected estimate and the one that is trusted
     Referee handover;  // of the reference and the fallback
   };
@@ -58,7 +59,8 @@ class Correction {
   StepRecord trusted_;
   double handed_over_ = 0.0;
   CorrectionInputs::Features features_;
-  FuzzyNetwork::Strengths phi_;
+  NetworkMemory memory_;
+  NetworkAnswer answer_;
 };
 
 }  // namespace truebearing

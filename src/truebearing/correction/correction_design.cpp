@@ -3,7 +3,25 @@
 
 #include <algorithm>
 
+#include "truebearing/core/error.hpp"
+#include "truebearing/core/suggestion.hpp"
+
 namespace truebearing {
+
+std::string_view to_string(NetworkKind kind) {
+  return kind == NetworkKind::rules ? "nfnn" : "gru";
+}
+
+const std::vector<std::string>& network_names() {
+  static const std::vector<std::string> names{"nfnn", "gru"};
+  return names;
+}
+
+NetworkKind network_kind(const std::string& name) {
+  for (const NetworkKind kind : {NetworkKind::rules, NetworkKind::recurrent})
+    if (to_string(kind) == name) return kind;
+  throw InputError("network", "is \"" + name + "\"", suggestion(name, network_names()));
+}
 
 std::vector<std::string> CorrectionDesign::members() const {
   std::vector<std::string> names;
@@ -22,6 +40,7 @@ std::string differences(const CorrectionDesign& a, const CorrectionDesign& b) {
   const auto compare = [&](const char* key, const auto& of_a, const auto& of_b) {
     if (of_a != of_b) keys += (keys.empty() ? "" : ", ") + std::string(key);
   };
+  compare("network", a.network, b.network);
   compare("base", a.base, b.base);
   compare("reference", a.reference, b.reference);
   compare("covariance_of", a.covariance_of, b.covariance_of);

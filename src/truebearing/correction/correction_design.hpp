@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "truebearing/correction/feature.hpp"
@@ -11,7 +12,18 @@
 
 namespace truebearing {
 
+/// Kinds of networks.
+enum class NetworkKind {
+  rules,     ///< the normalized fuzzy neural network (rule_base.hpp)
+  recurrent  ///< a gated recurrent network (gated_recurrent.hpp)
+};
+/// Their names, as studies and model files spell them: "nfnn", "gru".
+std::string_view to_string(NetworkKind kind);
+const std::vector<std::string>& network_names();
+NetworkKind network_kind(const std::string& name);
+
 struct CorrectionDesign {
+  NetworkKind network = NetworkKind::rules;
   std::string base;            ///< the tracker whose output is corrected
   std::string reference;       ///< the tracker that is trusted: the base itself, or a tuned one
   std::string covariance_of;   ///< the tracker whose covariance the correction's own is made from
@@ -19,7 +31,7 @@ struct CorrectionDesign {
   /// The network's outputs are in standard deviations of the base, component by component in the frame, and not in the
   /// units of the state.
   bool output_in_sigma = false;
-  bool covariance_moments = false;  ///< covariance head: residual moments per rule, not one inflation
+  bool covariance_moments = false;  ///< covariance head: residual moments, not one inflation
   std::vector<FeatureSpec> features;
 
   bool operator==(const CorrectionDesign&) const = default;

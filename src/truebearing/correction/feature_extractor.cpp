@@ -171,6 +171,13 @@ void FeatureExtractor::remember(Term& term, const StepRecord& record) const {
       memory = Eigen::Vector2d(record.time_s, before_s);
       break;
     }
+    case FeatureKind::frame_turn: {  // the velocities at the last two
+      const Eigen::Vector2d now = record.x.tail<2>();
+      const Eigen::Vector2d before = memory.size() == 4 ? Eigen::Vector2d(memory.head<2>()) : now;
+      memory.resize(4);
+      memory << now, before;
+      break;
+    }
     case FeatureKind::speed_change:
     case FeatureKind::velocity_change: {
       BoundedVector now = record.x.tail<2>();
@@ -278,6 +285,12 @@ double FeatureExtractor::value(const Term& term, const StepRecord& base, const S
       const bool uses = base.status == StepStatus::ok && base.innovation;
       const double last_s = term.used > (uses ? 1.0 : 0.0) ? term.memory[uses ? 1 : 0] : began_s_;
       return std::log(std::max(base.time_s - last_s, kLeastInterval_s));
+    }
+    case FeatureKind::frame_turn: {
+      if (term.memory.size() != 4) return 0.0;
+      const bool uses = base.status == StepStatus::ok && base.innovation;
+      const Eigen::Vector2d now = base.x.tail<2>(), then = uses ? term.memory.tail<2>() : term.memory.head<2>();
+      return std::atan2(now.x() * then.y() - now.y() * then.x(), now.dot(then));
     }
   }
   return kNaN;

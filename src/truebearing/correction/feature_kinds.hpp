@@ -38,7 +38,9 @@ enum class FeatureKind {
                     ///< space
   neighbour_closeness,   ///< how near the nearest other target is, in (0, 1]; 0 where the tracker follows no other
   neighbour_difference,  ///< closeness (x_neighbour[component] - x[component]) / scale; 0 where there is no other
-  log_interval           ///< ln of the time from the last used measurement before this step to this step, at least 1 ms
+  log_interval,          ///< ln of the time from the last used measurement before this step to this step, at least 1 ms
+  frame_turn  ///< the angle by which the velocity has turned since the last used measurement, to starboard, rad; plane
+              ///< space
 };
 
 /// What a feature of this kind reads beside the state.
@@ -209,6 +211,11 @@ inline constexpr std::array kFeatureRows{
                FeatureMirror::by_component,
                {.component = kComponent, .scale = true, .blocks = kNeighbour}},
     FeatureRow{FeatureKind::log_interval, "log_interval", "ln interval", FeatureMirror::even, {.blocks = kInnovation}},
+    FeatureRow{FeatureKind::frame_turn,
+               "frame_turn",
+               "turn of the velocity",
+               FeatureMirror::odd,
+               {.plane = true, .blocks = kNothing}},
 };
 
 }  // namespace detail

@@ -14,16 +14,17 @@
 
 #include "truebearing/core/bounded.hpp"
 #include "truebearing/core/simd_lanes.hpp"
+#include "truebearing/correction/network_answer.hpp"
 
 namespace truebearing {
 
 class FuzzyNetwork {
  public:
-  static constexpr int kMaxInputs = 16;
+  static constexpr int kMaxInputs = kMaxFeatures;
   static constexpr int kMaxRules = 256;
   static constexpr int kMaxOutputs = kMaxDimension;
 
-  using Inputs = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxInputs, 1>;
+  using Inputs = NetworkInputs;
   using Strengths = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxRules, 1>;
   using Outputs = BoundedVector;
 

@@ -2,6 +2,7 @@
 #include "truebearing/correction/model_file.hpp"
 
 #include <cmath>
+#include <cstdint>
 #include <fmt/format.h>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -9,7 +10,10 @@
 #include "truebearing/core/error.hpp"
 #include "truebearing/core/suggestion.hpp"
 #include "truebearing/correction/correction_bounds.hpp"
+#include "truebearing/correction/network_file.hpp"
+#include "truebearing/io/file.hpp"
 #include "truebearing/io/json_file.hpp"
+#include "truebearing/io/safetensors.hpp"
 
 namespace truebearing {
 namespace {
@@ -21,80 +25,9 @@ constexpr const char* kFormat = "truebearing-correction";
 constexpr int kVersion = 2;
 constexpr const char* kSigma = "sigma";
 constexpr const char* kMoments = "moments";
+constexpr const char* kWeightsEnding = ".safetensors";
 
-// One object of the file, read key by key; finish() refuses every key that nobody asked for.
-class ObjectReader {
- public:
-  ObjectReader(const Json& object, std::string file, std::string path)
-      : object_(&object), file_(std::move(file)), path_(std::move(path)) {
-    if (!object.is_object()) throw InputError(file_ + (path_.empty() ? "" : ": " + path_), "is no object", "{ ... }");
-  }
-
-  const Json& at(const std::string& key) {
-    asked_.push_back(key);
-    const auto found = object_->find(key);
-    if (found == object_->end()) throw error(key, "is missing");
-    return *found;
-  }
-
-  bool has(const std::string& key) const { return object_->contains(key); }
-
-  std::string text(const std::string& key) {
-    const Json& value = at(key);
-    if (!value.is_string()) throw error(key, "is no text", "text in quotes");
-    return value.get<std::string>();
-  }
-
-  double number(const std::string& key) { return finite(at(key), key); }
-  /// A limit: null stands for none, infinity.
-  double number_or_none(const std::string& key) {
-    return at(key).is_null() ? std::numeric_limits<double>::infinity() : number(key);
-  }
-
-  Eigen::VectorXd vector(const std::string& key, Eigen::Index size) {
-    const Json& value = at(key);
-    if (!value.is_array() || value.size() != static_cast<std::size_t>(size))
-      throw error(key, value.is_array() ? fmt::format("holds {} values", value.size()) : "is no array",
-                  fmt::format("an array of {} numbers", size));
-    Eigen::VectorXd numbers(size);
-    for (Eigen::Index i = 0; i < size; ++i) numbers[i] = finite(value[static_cast<std::size_t>(i)], key);
-    return numbers;
-  }
-
-  const Json& array(const std::string& key, std::size_t low, std::size_t high) {
-    const Json& value = at(key);
-    if (!value.is_array() || value.size() < low || value.size() > high)
-      throw error(key, value.is_array() ? fmt::format("holds {} values", value.size()) : "is no array",
-                  fmt::format("an array of {} to {}", low, high));
-    return value;
-  }
-
-  ObjectReader object(const std::string& key) { return {at(key), file_, path_.empty() ? key : path_ + "." + key}; }
-
-  void finish() const {
-    for (const auto& [key, value] : object_->items())
-      if (std::find(asked_.begin(), asked_.end(), key) == asked_.end())
-        throw error(key, "is not a known key", suggestion(key, asked_));
-  }
-
-  InputError error(const std::string& key, const std::string& found, const std::string& valid = {}) const {
-    return {file_ + ": " + (path_.empty() ? key : path_ + "." + key), found, valid};
-  }
-
- private:
-  double finite(const Json& value, const std::string& key) const {
-    if (!value.is_number() || !std::isfinite(value.get<double>()))
-      throw error(key, "holds " + value.dump().substr(0, 40), "finite numbers");
-    return value.get<double>();
-  }
-
-  const Json* object_;
-  std::string file_;
-  std::string path_;
-  std::vector<std::string> asked_;
-};
-
-FeatureSpec read_feature(ObjectReader object) {
+FeatureSpec read_feature(JsonObject object) {
   FeatureSpec feature;
   const std::string kind = object.text("kind");
   try {
@@ -139,39 +72,37 @@ OrderedJson feature_json(const FeatureSpec& feature) {
   return json;
 }
 
-template <typename Derived>
-OrderedJson array_json(const Eigen::MatrixBase<Derived>& values) {
-  OrderedJson array = OrderedJson::array();
-  for (Eigen::Index i = 0; i < values.size(); ++i) array.push_back(values.derived().coeff(i));
-  return array;
+const FuzzyNetwork::Parameters& parameters_of(const RuleBase& rules) {
+  return rules.network.parameters();
+}
+const GatedRecurrent::Parameters& parameters_of(const GatedRecurrent& network) {
+  return network.parameters();
+}
+
+OrderedJson normalisation_json(const auto& parameters) {
+  return {{"input_mean", array_json(parameters.input_mean)},
+          {"input_scale", array_json(parameters.input_scale)},
+          {"input_clip", parameters.input_clip},
+          {"output_scale", array_json(parameters.output_scale)}};
 }
 
 OrderedJson limit_json(double limit) {
   return std::isfinite(limit) ? OrderedJson(limit) : OrderedJson(nullptr);
 }
 
-std::vector<std::string> read_texts(ObjectReader& object, const std::string& key, std::size_t high) {
-  std::vector<std::string> texts;
-  for (const Json& value : object.array(key, 1, high)) {
-    if (!value.is_string()) throw object.error(key, "holds " + value.dump().substr(0, 40), "texts");
-    texts.push_back(value.get<std::string>());
-  }
-  return texts;
-}
-
 // Version 1 held the bounds that the model was validated with; now its provenance remembers them.
-std::string read_first_bounds(ObjectReader& file) {
+std::string read_first_bounds(JsonObject& file) {
   CorrectionBounds bounds{file.number_or_none("kappa"), !file.at("gate").is_null(), {}};
   if (file.has("referee")) {
-    ObjectReader referee = file.object("referee");
+    JsonObject referee = file.object("referee");
     bounds.referee = RefereeOptions{referee.number("alpha"), referee.number("tolerance"), referee.number("edge")};
     referee.finish();
   }
   return describe(bounds);
 }
 
-CorrectionModel model_from(const Json& json, const std::string& name) {
-  ObjectReader file(json, name, "");
+CorrectionModel model_from(const Json& json, const std::string& name, const ReadBeside& read) {
+  JsonObject file(json, name, "");
   if (file.text("format") != kFormat) throw file.error("format", "is not " + std::string(kFormat), kFormat);
   const double version = file.number("version");
   if (version != 1 && version != kVersion)
@@ -179,11 +110,11 @@ CorrectionModel model_from(const Json& json, const std::string& name) {
                      fmt::format("1 or {}, which this program reads", kVersion));
 
   CorrectionModel model;
-  model.space = &state_space_of_components(read_texts(file, "state", kMaxDimension));
+  model.space = &state_space_of_components(file.texts("state", kMaxDimension));
   model.design.base = file.text("base");
   model.design.reference = file.text("reference");
   model.design.covariance_of = file.text("covariance_of");
-  ObjectReader trackers = file.object("trackers");
+  JsonObject trackers = file.object("trackers");
   for (const auto& [key, value] : json["trackers"].items()) model.trackers[key] = trackers.text(key);
 
   if (file.has("frame")) {
@@ -197,22 +128,27 @@ CorrectionModel model_from(const Json& json, const std::string& name) {
       throw file.error("output_in", "is not \"sigma\"", "\"sigma\", or no such key");
     model.design.output_in_sigma = true;
   }
-  const Json& features = file.array("features", 1, FuzzyNetwork::kMaxInputs);
+  const Json& features = file.array("features", 1, kMaxFeatures);
   for (std::size_t i = 0; i < features.size(); ++i)
-    model.design.features.push_back(read_feature(ObjectReader(features[i], name, fmt::format("features[{}]", i))));
+    model.design.features.push_back(read_feature(JsonObject(features[i], name, fmt::format("features[{}]", i))));
   const auto d = static_cast<Eigen::Index>(features.size());
-  const auto n = static_cast<Eigen::Index>(model.space->size());
-
-  FuzzyNetwork::Parameters parameters;
-  ObjectReader normalisation = file.object("normalisation");
-  parameters.input_mean = normalisation.vector("input_mean", d);
-  parameters.input_scale = normalisation.vector("input_scale", d);
-  parameters.input_clip = normalisation.number("input_clip");
-  parameters.output_scale = normalisation.vector("output_scale", n);
-  normalisation.finish();
+  if (file.has("network")) {
+    const std::string kind = file.text("network");
+    if (kind != to_string(NetworkKind::recurrent))
+      throw file.error("network", "is \"" + kind + "\"", "\"gru\", or no such key");
+    model.design.network = NetworkKind::recurrent;
+  }
+  model.design.covariance_moments = file.has("covariance");
+  if (model.design.covariance_moments && file.text("covariance") != kMoments)
+    throw file.error("covariance", "is not \"moments\"", "\"moments\", or no such key");
+  const Eigen::Index n = model.space->size();
+  if (model.design.network == NetworkKind::rules)
+    model.network = read_rule_base(file, model.design, n);
+  else
+    model.network = read_gated_recurrent(file, model.design, n, read);
 
   if (!file.at("gate").is_null()) {
-    ObjectReader gate = file.object("gate");
+    JsonObject gate = file.object("gate");
     model.gate = BoxGate{gate.vector("low", d),
                          gate.vector("high", d),
                          gate.number("edge_fraction"),
@@ -220,7 +156,7 @@ CorrectionModel model_from(const Json& json, const std::string& name) {
                          gate.number("disagreement_edge_fraction"),
                          {}};
     if (gate.has("intervals")) {  // not in models of before it was seen
-      ObjectReader intervals = gate.object("intervals");
+      JsonObject intervals = gate.object("intervals");
       model.gate->intervals = {intervals.number("low_s"), intervals.number_or_none("high_s"),
                                intervals.number_or_none("longest_coast_s")};
       intervals.finish();
@@ -228,38 +164,11 @@ CorrectionModel model_from(const Json& json, const std::string& name) {
     gate.finish();
   }
 
-  const Json& rules = file.array("rules", 1, FuzzyNetwork::kMaxRules);
-  const auto M = static_cast<Eigen::Index>(rules.size());
-  parameters.centres.resize(M, d);
-  parameters.widths.resize(M, d);
-  parameters.consequents.resize(M, n);
-  const bool moments = model.design.covariance_moments = file.has("covariance");
-  if (moments && file.text("covariance") != kMoments)
-    throw file.error("covariance", "is not \"moments\"", "\"moments\", or no such key");
-  model.inflation.resize(moments ? 0 : M);
-  model.moments.resize(moments ? M : 0, moments ? n * n : 0);
-  model.usage.resize(M);
-  model.local_mean.resize(M, n);
-  for (Eigen::Index j = 0; j < M; ++j) {
-    ObjectReader rule(rules[static_cast<std::size_t>(j)], name, fmt::format("rules[{}]", j));
-    parameters.centres.row(j) = rule.vector("centre", d).transpose();
-    parameters.widths.row(j) = rule.vector("width", d).transpose();
-    parameters.consequents.row(j) = rule.vector("consequent", n).transpose();
-    if (moments)
-      model.moments.row(j) = rule.vector("moments", n * n).transpose();
-    else
-      model.inflation[j] = rule.number("inflation");
-    model.usage[j] = rule.number("usage");
-    model.local_mean.row(j) = rule.vector("local_mean", n).transpose();
-    rule.finish();
-  }
-
-  ObjectReader provenance = file.object("provenance");
+  JsonObject provenance = file.object("provenance");
   for (const auto& [key, value] : json["provenance"].items()) model.provenance[key] = provenance.text(key);
   if (version == 1) model.provenance["bounds"] = read_first_bounds(file);
   file.finish();
   try {
-    model.network = FuzzyNetwork(std::move(parameters));
     model.validate();
   } catch (const InputError& error) {
     throw InputError(name + ": " + error.where(), error.found(), error.valid());
@@ -270,15 +179,47 @@ CorrectionModel model_from(const Json& json, const std::string& name) {
 }  // namespace
 
 CorrectionModel read_model_file(const std::filesystem::path& path) {
-  return model_from(read_json_file(path), path.string());
+  return model_from(read_json_file(path), path.string(), [&](const std::string& name) {
+    return read_text_file(path.parent_path() / name, TensorLimits{}.max_bytes);
+  });
 }
 
 CorrectionModel parse_model(std::string_view text, const std::string& name) {
-  return model_from(parse_json(text, name), name);
+  return model_from(parse_json(text, name), name, [&](const std::string& weights) -> std::string {
+    throw InputError(name, "names the file " + weights + ", and stands in no folder", "a model file");
+  });
+}
+
+std::string weights_name(const CorrectionModel& model) {
+  const auto* network = std::get_if<GatedRecurrent>(&model.network);
+  if (!network) return {};
+  std::uint64_t hash = 0xcbf29ce484222325U;  // FNV-1a
+  for (const char byte : gated_recurrent_weights(*network))
+    hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3U;
+  const auto said = [&](const char* key, const char* otherwise) {
+    const auto found = model.provenance.find(key);
+    return found == model.provenance.end() ? std::string(otherwise) : found->second;
+  };
+  return fmt::format("{}.{}.{:08x}{}", said("study", "model"), said("tracker", "gru"), hash >> 32, kWeightsEnding);
+}
+
+void write_model_file(const std::filesystem::path& path, const CorrectionModel& model) {
+  const std::string weights = weights_name(model);
+  const std::filesystem::path folder = path.parent_path();
+  std::string before;
+  try {
+    before = parse_json(read_text_file(path, JsonLimits{}.max_bytes), path.string()).value("weights", "");
+  } catch (const std::exception&) {  // whatever it was, it is replaced
+  }
+  if (!weights.empty())
+    write_file_atomically(folder / weights, gated_recurrent_weights(std::get<GatedRecurrent>(model.network)));
+  write_file_atomically(path, model_text(model));
+  std::error_code ignored;
+  const bool ours = before.ends_with(kWeightsEnding) && before.find('/') == std::string::npos;
+  if (ours && before != weights) std::filesystem::remove(folder / before, ignored);
 }
 
 std::string model_text(const CorrectionModel& model) {
-  const FuzzyNetwork::Parameters& parameters = model.network.parameters();
   OrderedJson json;
   json["format"] = kFormat;
   json["version"] = kVersion;
@@ -292,10 +233,7 @@ std::string model_text(const CorrectionModel& model) {
   if (model.design.output_in_sigma) json["output_in"] = kSigma;
   json["features"] = OrderedJson::array();
   for (const FeatureSpec& feature : model.design.features) json["features"].push_back(feature_json(feature));
-  json["normalisation"] = {{"input_mean", array_json(parameters.input_mean)},
-                           {"input_scale", array_json(parameters.input_scale)},
-                           {"input_clip", parameters.input_clip},
-                           {"output_scale", array_json(parameters.output_scale)}};
+  std::visit([&](const auto& kind) { json["normalisation"] = normalisation_json(parameters_of(kind)); }, model.network);
   json["gate"] = nullptr;
   if (model.gate)
     json["gate"] = {{"low", array_json(model.gate->low)},
@@ -308,18 +246,11 @@ std::string model_text(const CorrectionModel& model) {
                                  {"high_s", limit_json(model.gate->intervals.high_s)},
                                  {"longest_coast_s", limit_json(model.gate->intervals.longest_coast_s)}};
   if (model.design.covariance_moments) json["covariance"] = kMoments;
-  json["rules"] = OrderedJson::array();
-  for (Eigen::Index j = 0; j < parameters.centres.rows(); ++j) {
-    OrderedJson rule{{"centre", array_json(parameters.centres.row(j))},
-                     {"width", array_json(parameters.widths.row(j))},
-                     {"consequent", array_json(parameters.consequents.row(j))}};
-    if (model.design.covariance_moments)
-      rule["moments"] = array_json(model.moments.row(j));
-    else
-      rule["inflation"] = model.inflation[j];
-    rule["usage"] = model.usage[j];
-    rule["local_mean"] = array_json(model.local_mean.row(j));
-    json["rules"].push_back(std::move(rule));
+  if (const auto* rules = std::get_if<RuleBase>(&model.network)) {
+    write_rule_base(*rules, model.design, json);
+  } else {
+    json["network"] = std::string(to_string(model.design.network));
+    write_gated_recurrent(std::get<GatedRecurrent>(model.network), weights_name(model), json);
   }
   json["provenance"] = OrderedJson::object();
   for (const auto& [key, value] : model.provenance) json["provenance"][key] = value;

@@ -15,6 +15,13 @@ namespace truebearing {
 CorrectionModel read_model_file(const std::filesystem::path& path);
 CorrectionModel parse_model(std::string_view text, const std::string& name);
 
+/// Writes the file and, of a recurrent network, its weights beside it: under a name of their own content, before the
+/// model file that names them, so that whoever reads finds the old pair or the new one. The weights that the replaced
+/// file named are removed.
+void write_model_file(const std::filesystem::path& path, const CorrectionModel& model);
+/// Of that file; empty where the network stands in the model file.
+std::string weights_name(const CorrectionModel& model);
+
 /// The text of the file.
 std::string model_text(const CorrectionModel& model);
 

@@ -50,11 +50,12 @@ std::string term_word(double u, int parity) {
 }
 
 std::string rule_sentences(const CorrectionModel& model) {
-  const FuzzyNetwork::Parameters& parameters = model.network.parameters();
-  std::vector<Eigen::Index> order(static_cast<std::size_t>(model.network.rules()));
+  const RuleBase& rules = model.rules();
+  const FuzzyNetwork::Parameters& parameters = rules.network.parameters();
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(rules.network.rules()));
   std::iota(order.begin(), order.end(), Eigen::Index{0});
   std::stable_sort(order.begin(), order.end(),
-                   [&](Eigen::Index a, Eigen::Index b) { return model.usage[a] > model.usage[b]; });
+                   [&](Eigen::Index a, Eigen::Index b) { return rules.usage[a] > rules.usage[b]; });
 
   std::string text;
   int number = 0;
@@ -69,10 +70,10 @@ std::string rule_sentences(const CorrectionModel& model) {
         (parameters.input_mean.array() +
          parameters.centres.row(rule).transpose().array() * parameters.input_scale.array())
             .matrix();
-    model.network.strengths(centre, phi);
+    rules.network.strengths(centre, phi);
     text += fmt::format("{}. IF {} THEN add {}   (usage {:.1f} %, teacher's mean {})\n", ++number, conditions,
-                        amounts(model, model.network.output(phi)), 100.0 * model.usage[rule],
-                        amounts(model, model.local_mean.row(rule).transpose()));
+                        amounts(model, rules.network.output(phi)), 100.0 * rules.usage[rule],
+                        amounts(model, rules.local_mean.row(rule).transpose()));
   }
   return text;
 }

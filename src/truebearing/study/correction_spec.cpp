@@ -5,6 +5,7 @@
 #include <toml++/toml.h>
 
 #include "truebearing/core/constants.hpp"
+#include "truebearing/correction/gated_recurrent.hpp"
 
 namespace truebearing {
 namespace {
@@ -59,10 +60,11 @@ std::optional<RefereeOptions> read_referee(TableReader& table) {
   return referee;
 }
 
-TrainingSpec read_training(TableReader& table) {
+TrainingSpec read_training(TableReader& table, NetworkKind network) {
   TrainingSpec training;
+  const bool recurrent = network == NetworkKind::recurrent;
   const std::string method =
-      table.choice_or("method", {"variable_projection", "back_propagation"}, "variable_projection");
+      recurrent ? "" : table.choice_or("method", {"variable_projection", "back_propagation"}, "variable_projection");
   training.runs = static_cast<std::size_t>(table.integer("runs", 1, 1000000));
   training.from_step = static_cast<int>(table.integer_or("from_step", 1, 1, 1000000));
   training.every_s = table.number_or("every_s", 0.0, kNonNegative);
@@ -75,8 +77,15 @@ TrainingSpec read_training(TableReader& table) {
   if (table.has("scenario")) training.scenario = read_changed_scenario(table, "scenario");
   if (table.has("covariance_scenario"))
     training.covariance_scenario = read_changed_scenario(table, "covariance_scenario");
-  training.learning_rate = table.number_or("learning_rate", 0.05, {0.0, 1.0, true});
-  if (method == "variable_projection") {
+  training.learning_rate = table.number_or("learning_rate", recurrent ? 0.004 : 0.05, {0.0, 1.0, true});
+  if (recurrent) {
+    training.method = TrainingSpec::Method::recurrent;
+    if (training.mirror == TrainingSpec::Mirror::pairs)
+      throw table.error("mirror", "is \"pairs\"", "true or false for a recurrent network");
+    training.units = static_cast<int>(table.integer_or("units", training.units, 1, GatedRecurrent::kMaxUnits));
+    training.epochs = static_cast<int>(table.integer_or("epochs", 40, 1, 10000));
+    training.batch = static_cast<int>(table.integer_or("batch", training.batch, 2, 100000));
+  } else if (method == "variable_projection") {
     training.rules = static_cast<int>(table.integer("rules", 1, 256));
     if (training.mirror == TrainingSpec::Mirror::pairs && training.rules % 2 != 0)
       throw table.error("rules", "is odd", "an even number, for rules in mirror pairs");
@@ -148,13 +157,18 @@ CorrectionSpec read_correction_spec(TableReader& table) {
   read_gate(table, spec);
   design.frame = frame_of(table.choice_or("frame", frame_names(), "state"));
   design.output_in_sigma = table.choice_or("output_in", {"units", "sigma"}, "units") == "sigma";
-  design.covariance_moments = table.choice_or("covariance", {"inflation", "moments"}, "inflation") == "moments";
+  design.network = network_kind(table.choice_or("network", network_names(), "nfnn"));
+  const bool recurrent = design.network == NetworkKind::recurrent;
+  design.covariance_moments =
+      table.choice_or("covariance", {"inflation", "moments"}, recurrent ? "moments" : "inflation") == "moments";
+  if (recurrent && !design.covariance_moments)
+    throw table.error("covariance", "is \"inflation\"", "\"moments\" for a recurrent network");
   spec.model = table.resolve(table.text("model"));
   for (TableReader& feature : table.tables("features")) design.features.push_back(read_feature(feature));
   if (design.features.empty())
     throw table.error("features", "is missing or empty", "an array of tables with a `kind` each");
   TableReader training = table.table("training");
-  spec.training = read_training(training);
+  spec.training = read_training(training, design.network);
   return spec;
 }
 

@@ -31,7 +31,8 @@ ChangedScenario read_changed_scenario(TableReader& table, const std::string& key
 struct TrainingSpec {
   enum class Method {
     variable_projection,  ///< scattered rules; the default
-    back_propagation      ///< the paper's own: a grid partition, all parameters by gradient descent
+    back_propagation,     ///< the paper's own: a grid partition, all parameters by gradient descent
+    recurrent             ///< of a recurrent network: back-propagation through time, on whole tracks
   };
   Method method = Method::variable_projection;
   std::size_t runs = 400;
@@ -53,6 +54,8 @@ struct TrainingSpec {
   int terms_per_input = 3;  ///< back-propagation
   int epochs = 300;
   double momentum = 0.0;
+  int units = 48;                           ///< of a recurrent network
+  int batch = 128;                          ///< tracks
   std::optional<ChangedScenario> scenario;  ///< what is taught; the study's own where absent
   /// Where given, the covariance head and the box of the gate are fitted to this (wider) scenario instead.
   std::optional<ChangedScenario> covariance_scenario;

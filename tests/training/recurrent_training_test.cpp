@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+// Skipped where the build has no LibTorch.
+#include "training/recurrent_training.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+#include "tests/support/error_message.hpp"
+#include "tests/support/recurrent_models.hpp"
+#include "truebearing/core/error.hpp"
+#include "truebearing/core/random.hpp"
+
+namespace truebearing::recurrent_training_test {
+namespace {
+
+class RecurrentTraining : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(TRUEBEARING_TORCH_FOLDER "/truebearing_torch.so")) GTEST_SKIP() << "no LibTorch";
+    module_ = recurrent_module(TRUEBEARING_TORCH_FOLDER);
+  }
+
+  RecurrentModule module_{};
+};
+
+constexpr int kTracks = 60, kSteps = 40;
+
+// The target is the mean so far of the first input; every fourth row is not remembered, and its input is that of a row
+// which the target does not count.
+RecurrentRows running_means(std::uint64_t seed) {
+  RandomStream random({.seed = seed}, StreamId::test);
+  RecurrentRows rows;
+  rows.inputs.resize(2, kTracks * kSteps);
+  rows.targets.resize(1, kTracks * kSteps);
+  for (int track = 0, row = 0; track < kTracks; ++track) {
+    double sum = 0.0;
+    int count = 0;
+    for (int k = 0; k < kSteps; ++k, ++row) {
+      const bool used = k % 4 != 3;
+      const double input = random.normal();
+      if (used) sum += input, ++count;
+      rows.inputs.col(row) << static_cast<float>(input), used ? 1.0F : 0.0F;
+      rows.targets(0, row) = static_cast<float>(sum / count);
+      rows.begins.push_back(k == 0);
+      rows.taught.push_back(k >= 2);
+      rows.used.push_back(used);
+    }
+  }
+  return rows;
+}
+
+GatedRecurrent::Parameters scales() {
+  GatedRecurrent::Parameters parameters;
+  parameters.input_mean = Eigen::Vector2d::Zero();
+  parameters.input_scale = Eigen::Vector2d::Ones();
+  parameters.input_clip = 10.0;
+  parameters.output_scale = Eigen::VectorXd::Ones(1);
+  return parameters;
+}
+
+RecurrentOptions few_epochs() {
+  return {.units = 8, .epochs = 30, .batch = 16, .learning_rate = 0.02, .seed = 3, .two_threads = true};
+}
+
+// What the run-time network makes of the rows that are taught.
+Eigen::VectorXd errors(const RecurrentRows& rows, GatedRecurrent::Parameters parameters, Eigen::VectorXd* deviation) {
+  if (parameters.covariance_weight.size() == 0) {
+    parameters.covariance_weight = Eigen::MatrixXf::Zero(1, parameters.weight_hh.cols());
+    parameters.covariance_bias = Eigen::VectorXf::Zero(1);
+  }
+  const GatedRecurrent network(parameters);
+  NetworkMemory kept, memory;
+  NetworkAnswer answer;
+  Eigen::VectorXd errors = Eigen::VectorXd::Zero(rows.inputs.cols());
+  if (deviation) *deviation = Eigen::VectorXd::Ones(rows.inputs.cols());
+  for (Eigen::Index row = 0; row < errors.size(); ++row) {
+    const auto i = static_cast<std::size_t>(row);
+    if (rows.begins[i]) kept = NetworkMemory::Zero(network.memory());
+    memory = kept;
+    network.answer(rows.inputs.col(row).cast<double>(), memory, answer);
+    if (rows.used[i]) kept = memory;
+    if (!rows.taught[i]) continue;
+    errors[row] = static_cast<double>(rows.targets(0, row)) - answer.y[0];
+    if (deviation) (*deviation)[row] = std::sqrt(answer.moments(0, 0));
+  }
+  return errors;
+}
+
+TEST_F(RecurrentTraining, LearnsWhatOnlyAMemoryCanTell) {
+  const RecurrentRows training = running_means(1), validation = running_means(2), fresh = running_means(7);
+  GatedRecurrent::Parameters parameters = scales();
+  const double cost = module_.train(training, validation, few_epochs(), {}, parameters);
+  const auto mean_square = [](const RecurrentRows& rows, const Eigen::VectorXd& e) {
+    return e.squaredNorm() / static_cast<double>(std::count(rows.taught.begin(), rows.taught.end(), true));
+  };
+  // What the trainer says of the validation's rows is what the run-time network does there.
+  EXPECT_NEAR(mean_square(validation, errors(validation, parameters, nullptr)), cost, 1e-4 * cost);
+  const double power = fresh.targets.cast<double>().squaredNorm() / static_cast<double>(fresh.targets.size());
+  EXPECT_LT(mean_square(fresh, errors(fresh, parameters, nullptr)), 0.2 * power);
+}
+
+TEST_F(RecurrentTraining, IsTheSameToTheBitOnOneThreadAndTwo) {
+  const RecurrentRows training = running_means(1), validation = running_means(2);
+  RecurrentOptions options = few_epochs();
+  options.epochs = 3;
+  GatedRecurrent::Parameters first = scales(), again = scales(), alone = scales(), other = scales();
+  module_.train(training, validation, options, {}, first);
+  module_.train(training, validation, options, {}, again);
+  EXPECT_EQ(first, again);
+  options.two_threads = false;
+  module_.train(training, validation, options, {}, alone);
+  EXPECT_EQ(first, alone);
+  options.seed = 4;
+  module_.train(training, validation, options, {}, other);
+  EXPECT_FALSE(first == other);
+}
+
+// Errors whose deviation the input tells: the head has to say which.
+TEST_F(RecurrentTraining, CovarianceHeadSaysHowSureTheNetworkIs) {
+  RecurrentRows rows = running_means(1);
+  GatedRecurrent::Parameters parameters = scales();
+  RecurrentOptions options = few_epochs();
+  options.epochs = 3;
+  module_.train(rows, running_means(2), options, {}, parameters);
+  RandomStream random({.seed = 9}, StreamId::test);
+  Eigen::MatrixXf sigmas(1, rows.inputs.cols());
+  for (Eigen::Index row = 0; row < sigmas.cols(); ++row)
+    sigmas(0, row) = static_cast<float>((rows.used[static_cast<std::size_t>(row)] ? 0.5 : 2.0) * random.normal());
+  module_.fit_covariance(rows, sigmas, 1, {}, parameters);
+  Eigen::VectorXd deviation;
+  errors(rows, parameters, &deviation);
+  double used = 0.0, lone = 0.0;
+  int counts[2] = {};
+  for (Eigen::Index row = 0; row < deviation.size(); ++row) {
+    const auto i = static_cast<std::size_t>(row);
+    if (!rows.taught[i]) continue;
+    (rows.used[i] ? used : lone) += deviation[row];
+    ++counts[rows.used[i] ? 0 : 1];
+  }
+  // One number for both would be 1.1.
+  EXPECT_NEAR(used / counts[0], 0.5, 0.2);
+  EXPECT_NEAR(lone / counts[1], 2.0, 0.7);
+}
+
+TEST_F(RecurrentTraining, RunTimeNetworkAnswersAsLibTorchOverAThousandSteps) {
+  for (const int encoder : {0, 12}) {
+    GatedRecurrent::Parameters parameters = testing::recurrent_parameters(5, 8, encoder, 32, 4);
+    parameters.weight_hh *= 0.3F;  // one that forgets: a chaotic one is told apart by its last digits
+    parameters.input_mean.setZero();
+    parameters.input_scale.setOnes();
+    parameters.output_scale.setOnes();
+    RandomStream random({}, StreamId::test);
+    const Eigen::MatrixXf inputs =
+        Eigen::MatrixXf::NullaryExpr(8, 1000, [&] { return static_cast<float>(random.normal()); });
+    const Eigen::MatrixXf wanted = module_.answers(parameters, inputs);
+    const GatedRecurrent network(parameters);
+    NetworkMemory h = NetworkMemory::Zero(32);
+    NetworkAnswer answer;
+    double worst = 0.0;
+    for (Eigen::Index k = 0; k < inputs.cols(); ++k) {
+      network.answer(inputs.col(k).cast<double>(), h, answer);
+      worst = std::max(worst, (answer.y - wanted.col(k).cast<double>()).lpNorm<Eigen::Infinity>());
+    }
+    EXPECT_LT(worst, 2e-5) << encoder;
+  }
+}
+
+TEST(RecurrentModule, ThatIsMissingIsSaid) {
+  EXPECT_NE(testing::error_message([] { recurrent_module("/nowhere"); }).find("which this build has not"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace truebearing::recurrent_training_test

@@ -10,6 +10,7 @@
 
 #include "tests/support/bearing_frequency_runs.hpp"
 #include "tests/support/statistics.hpp"
+#include "tests/support/tma_rates.hpp"
 #include "truebearing/core/covariance.hpp"
 
 namespace truebearing::frequency_changes_test {
@@ -231,6 +232,17 @@ TEST(FrequencyChanges, OneOutlierIsALevelOfItsOwnAndNoChange) {
   EXPECT_EQ(spoilt.frequencies.levels(), 2);
   EXPECT_TRUE(robust.changes.empty());
   EXPECT_LT((robust.estimate.x - plain.estimate.x).head<2>().norm(), 50.0);
+}
+
+// A few in a row cut the level, others hide in the first piece of it: without them it is as the rest.
+TEST(FrequencyChanges, ManyOutliersAreNoChangeOfTheTone) {
+  const auto scenario = testing::scenario_with_turns("passive_sonar_a", "");
+  const testing::TmaCase what{.outlier_share = 0.05};
+  for (const std::uint64_t run : {105u, 209u, 655u}) {
+    testing::TmaRates rates;
+    testing::TmaLog(scenario->simulate({5, Role::evaluation, run}), what, run).examine(what, rates);
+    EXPECT_EQ(rates.jumps, 0) << run;
+  }
 }
 
 TEST(FrequencyChanges, FrequenciesThatAreAllOutliersLeaveTheBearings) {

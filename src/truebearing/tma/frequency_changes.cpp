@@ -143,7 +143,10 @@ void FrequencyChangeBatch::find_levels(TargetMotionBatch& batch, const BearingWi
   };
   apart_.clear();
   merge(batch, window, prior, frequencies, estimate);
-  if (set_strays_apart(frequencies, estimate)) refine();
+  if (set_strays_apart(frequencies, estimate)) {
+    refine();
+    merge(batch, window, prior, frequencies, estimate);
+  }
   for (int splits = 0; splits < options_.most_splits; ++splits) {
     const IntervalScore interval = scan(frequencies, estimate);
     if (interval.statistic <= scan_threshold(frequencies.size())) break;
@@ -285,6 +288,7 @@ bool FrequencyChangeBatch::set_strays_apart(DopplerWindow& frequencies, const Ba
       residuals_.push_back((frequencies.frequency_hz(i) - shifted_hz) / frequencies.sigma_hz(i));
     }
     for (const Outlier& outlier : find_outliers_(residuals_)) {
+      if (fresh == levels) apart_.clear();  // what was unlike a level with strays may be like it without them
       level_[members_[outlier.at]] = fresh++;
       apart_.push_back(std::minmax(members_.front(), members_[outlier.at]));
     }

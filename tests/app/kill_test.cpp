@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <fmt/format.h>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -13,6 +12,7 @@
 #include <thread>
 
 #include "tests/app/program.hpp"
+#include "tests/support/environment.hpp"
 #include "truebearing/core/random.hpp"
 
 namespace truebearing::kill_test {
@@ -25,8 +25,7 @@ using testing::wait_for;
 using testing::write_study;
 
 int kills() {
-  const char* const given = std::getenv("TRUEBEARING_KILLS");
-  return given ? std::max(1, std::atoi(given)) : 3;
+  return testing::number_from_environment("TRUEBEARING_KILLS", 3);
 }
 
 struct Command {

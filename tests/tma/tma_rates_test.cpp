@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // How often target-motion analysis is right about simulated logs. TRUEBEARING_TMA_LOGS of each kind, ten where it is not
-// set; with a thousand the figures of docs/bearings.md (CONTRIBUTING.md).
+// set; with a thousand the figures of docs/bearings.md (CONTRIBUTING.md). TRUEBEARING_TMA_SEED gives others.
 #include <boost/math/distributions/binomial.hpp>
-#include <cstdlib>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "tests/support/environment.hpp"
 #include "tests/support/tma_rates.hpp"
 
 namespace truebearing::tma_rates_test {
@@ -20,8 +20,11 @@ constexpr double kByChance = 1e-3;  // the tests' own level, for each window
 constexpr double kMiss = 1e-5;      // how rarely chance breaks an expectation here
 
 int logs_of_each_kind() {
-  const char* wanted = std::getenv("TRUEBEARING_TMA_LOGS");
-  return wanted ? std::max(std::atoi(wanted), 1) : 10;
+  return testing::number_from_environment("TRUEBEARING_TMA_LOGS", 10);
+}
+
+std::uint64_t seed(int otherwise) {
+  return static_cast<std::uint64_t>(testing::number_from_environment("TRUEBEARING_TMA_SEED", otherwise));
 }
 
 // No more than comes by chance where the rate is twice the level.
@@ -44,7 +47,7 @@ TEST(TmaRates, OfSteadyTargetsWithAndWithoutOutliers) {
       for (const double end_s : {300.0, 390.0, 1500.0, 1e9})
         for (const double share : {0.0, 0.01, 0.05}) {
           const TmaRates rates =
-              rates_of(*scenario, {.method = method, .end_s = end_s, .outlier_share = share}, logs, 3);
+              rates_of(*scenario, {.method = method, .end_s = end_s, .outlier_share = share}, logs, seed(3));
           const double outliers = std::max(rates.outliers, 1);
           fmt::print("{:<16} {:>5} {:>6} {:>7.0f}% {:>9} {:>5} {:>8} {:>6.3f} {:>6.3f} {:>6}\n", name, method,
                      end_s < 1e9 ? fmt::format("{:.0f}", end_s) : "whole", 100.0 * share, rates.manoeuvres, rates.jumps,
@@ -70,7 +73,7 @@ TEST(TmaRates, OfTurnsOfThirtyDegrees) {
       const double middle_s = begin_s + 0.5 * kDegrees / kDegps;
       const auto scenario = scenario_with_turns(
           name, fmt::format("turns = [{{ time_s = {}, by_deg = {}, rate_degps = {} }}]", begin_s, kDegrees, kDegps));
-      const testing::TurnRates rates = testing::turn_rates_of(*scenario, middle_s, kWithin_s, logs, 5);
+      const testing::TurnRates rates = testing::turn_rates_of(*scenario, middle_s, kWithin_s, logs, seed(5));
       fmt::print("{:<16} {:>6.0f} {:>9.2f} {:>10.3f} {:>6.3f} {:>6.3f} {:>8.1f} {:>6.3f} {:>6.3f}\n", name, begin_s,
                  rates.change_mps, rates.bound.sigma_mps, rates.bound.found, rates.found / static_cast<double>(logs),
                  rates.bound.time_sigma_s, rates.bound.dated(kWithin_s),

@@ -17,7 +17,8 @@ struct TrainOptions {
   int threads = 0;                     ///< for the teacher's runs; the network itself is trained on one thread
   Progress teacher_progress;           ///< runs done
   TrainingProgress training_progress;  ///< iterations done
-  std::filesystem::path torch_folder = {};  ///< of the module that teaches recurrent networks; empty: recurrent_module()
+  std::filesystem::path torch_folder =
+      {};  ///< of the module that teaches recurrent networks; empty: recurrent_module()
 };
 
 struct TrainReport {

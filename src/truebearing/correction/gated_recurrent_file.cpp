@@ -89,10 +89,10 @@ GatedRecurrent read_gated_recurrent(JsonObject& file, const CorrectionDesign& de
     ++used;
   });
   if (used != tensors.size())
-    for (const auto& [name, tensor] : tensors) {
+    for (const auto& tensor : tensors) {
       bool known = false;
-      for_each_array(parameters, [&](const char* key, const auto&) { known = known || name == key; });
-      if (!known) throw InputError(where, fmt::format("holds {}, which this network has not", name));
+      for_each_array(parameters, [&](const char* key, const auto&) { known = known || tensor.first == key; });
+      if (!known) throw InputError(where, fmt::format("holds {}, which this network has not", tensor.first));
     }
   try {
     GatedRecurrent network(std::move(parameters));

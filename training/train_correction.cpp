@@ -153,12 +153,14 @@ std::string provenance_of(const ChangedScenario& changed) {
 // The covariance head of rules, from rows of what the correction will meet.
 void fit_covariance(const TeacherSet& met, const CorrectionSpec& spec, RuleBase& rules) {
   const Eigen::Index n = met.Y.cols();
+  rules.inflation = Eigen::VectorXd::Ones(rules.network.rules());  // until it is known
   const Eigen::MatrixXd errors = met.Y - outputs(met, rules);
   if (!spec.design.covariance_moments) {
     const Eigen::VectorXd lengths = mahalanobis_lengths(errors, met.covariance_factors);
     rules.inflation = covariance_inflation(rules.network, met.X, lengths.cwiseAbs2() / static_cast<double>(n));
     return;
   }
+  rules.inflation.resize(0);
   std::vector<int> output_parity;
   if (spec.training.mirror == TrainingSpec::Mirror::pairs)
     for (int i = 0; i < static_cast<int>(n); ++i) output_parity.push_back(component_parity(spec.design.frame, i));

@@ -78,6 +78,26 @@ TEST(MedianOf, IsExactOfFewAndWithinABinOfMany) {
   EXPECT_TRUE(std::isnan(none.value()));
 }
 
+TEST(MedianOf, IsExactOfManyWhereTheMiddleStaysAmongThoseThatAreKept) {
+  for (const std::size_t count : {9999u, 10000u, 40000u, 40001u}) {
+    std::vector<double> values = normals(count);
+    for (double& value : values) value = std::round(1e3 * std::abs(value));  // many are equal
+    MedianOf narrowed(5000);
+    for (const double value : values) narrowed.add(value);
+    EXPECT_EQ(narrowed.value(), median_of(values)) << count;
+  }
+}
+
+TEST(MedianOf, IsWithinABinWhereTheMiddleWandersAway) {
+  MedianOf narrowed(1000);
+  std::vector<double> values;
+  for (int k = 0; k < 20000; ++k) {
+    values.push_back(100.0 + k);
+    narrowed.add(values.back());
+  }
+  EXPECT_NEAR(narrowed.value(), median_of(values), median_of(values) / 4096.0);
+}
+
 TEST(MedianOf, TakesAnyValueInABin) {
   MedianOf binned(0);
   for (const double value : {0.0, 1e-300, 1e300, 7.0, 7.0, 7.0, HUGE_VAL}) binned.add(value);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -33,14 +32,15 @@ std::size_t index_of(const TrackerSet& trackers, const std::string& name) {
 // The figures of runs that are added in the order of their numbers, and gone afterwards.
 class ComparisonTally {
  public:
-  // expected: how many errors there will be of a quantity. All but the trackers must outlive it.
+  // kept_apart: as for SummaryTally. All but the trackers must outlive it.
   ComparisonTally(const TrackerSet& trackers, const std::vector<Scorer>& scorers, const ComparisonOptions& options,
-                  std::size_t expected, bool details)
+                  std::size_t kept_apart, bool details)
       : options_(options) {
     for (std::size_t i = 0; i < scorers.size(); ++i) {
       const std::string& name = trackers.name(static_cast<int>(i));
-      trackers_.push_back(
-          {SummaryTally(name, scorers[i], options.scoring, expected), MetricTallies(options.scoring, scorers[i]), {}});
+      trackers_.push_back({SummaryTally(name, scorers[i], options.scoring, kept_apart),
+                           MetricTallies(options.scoring, scorers[i]),
+                           {}});
       if (details) details_.emplace_back(scorers[i].dimension());
     }
     if (!options.global_minimum.empty()) global_minimum_ = index_of(trackers, options.global_minimum);
@@ -170,12 +170,6 @@ class SetOfRuns {
   std::vector<std::string> phases_;
 };
 
-// Of a quantity, over all steps of as many runs as this one.
-std::size_t errors_in(const Scenario& scenario, const ComparisonOptions& options) {
-  const Recording recording = scenario.simulate({options.seed, options.role, 0});
-  return options.runs * recording.measurements.size() * recording.truth.size();
-}
-
 }  // namespace
 
 const TrackerSummary* Comparison::tracker(const std::string& name) const {
@@ -190,10 +184,10 @@ Comparison compare(const TrackerSet& trackers, const std::vector<NamedScenario>&
   for (int i = 0; i < trackers.size(); ++i)
     scorers.emplace_back(scenarios.front().scenario->truth_space(), trackers.space(i));
 
-  std::vector<std::size_t> expected;
-  for (const NamedScenario& named : scenarios) expected.push_back(errors_in(*named.scenario, options));
-  ComparisonTally all(trackers, scorers, options, std::accumulate(expected.begin(), expected.end(), std::size_t{0}),
-                      options.details);
+  std::size_t medians = 0;  // at a time: of all sets, and of one
+  for (const Scorer& scorer : scorers) medians += (scenarios.size() > 1 ? 2 : 1) * scorer.quantities().size();
+  const std::size_t kept_apart = kMostValuesApart / std::max<std::size_t>(medians, 1);
+  ComparisonTally all(trackers, scorers, options, kept_apart, options.details);
   std::vector<ComparisonOfSet> sets;
   std::vector<double> time_s;
   std::vector<std::string> phases;
@@ -204,7 +198,7 @@ Comparison compare(const TrackerSet& trackers, const std::vector<NamedScenario>&
       progress = [&](std::size_t done, std::size_t) {
         options.progress(i * options.runs + done, scenarios.size() * options.runs);
       };
-    ComparisonTally alone(trackers, scorers, options, expected[i], false);
+    ComparisonTally alone(trackers, scorers, options, kept_apart, false);
     set.run(progress, [&](const RunOutcome& run) {
       all.add(run);
       if (scenarios.size() > 1) alone.add(run);

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "truebearing/core/constants.hpp"
-
 namespace truebearing {
 namespace {
 
@@ -50,19 +48,50 @@ void RunErrors::add(const SquaredErrors& run) {
 }
 
 void MedianOf::add(double value) {
-  const auto count = [this](double counted) {
-    ++bins_[bin_of(counted)];
-    ++count_;
-  };
-  if (!bins_.empty()) return count(value);
-  values_.push_back(value);
-  if (values_.size() <= kept_apart_) return;
-  bins_.resize(kBins);
-  for (const double kept : std::exchange(values_, {})) count(kept);
+  ++count_;
+  if (!bins_.empty()) ++bins_[bin_of(value)];
+  if (value < low_) {
+    ++below_;
+  } else if (value <= high_) {
+    values_.push_back(value);
+    if (values_.size() > kept_apart_) narrow();
+  }
+}
+
+// Keeps the half of them that is about the middle of all. Runs that are like those so far move the middle by less the
+// more there were.
+void MedianOf::narrow() {
+  if (bins_.empty()) {
+    bins_.resize(kBins);
+    for (const double value : values_) ++bins_[bin_of(value)];
+  }
+  const std::size_t size = values_.size(), middle = count_ / 2, quarter = size / 4;
+  if (quarter == 0 || middle < below_ || middle - below_ >= size) {
+    values_ = {};
+    low_ = kInfinity;
+    high_ = -kInfinity;
+    return;
+  }
+  const std::size_t at = middle - below_, begin = at - std::min(at, quarter), last = std::min(at + quarter, size - 1);
+  const auto place = [&](std::size_t k) { return values_.begin() + static_cast<std::ptrdiff_t>(k); };
+  std::nth_element(values_.begin(), place(begin), values_.end());
+  low_ = values_[begin];
+  std::nth_element(place(begin), place(last), values_.end());
+  high_ = values_[last];
+  below_ += begin;
+  values_.erase(place(last + 1), values_.end());
+  values_.erase(values_.begin(), place(begin));
 }
 
 double MedianOf::value() const {
   if (bins_.empty()) return median_of(values_);
+  const std::size_t upper = count_ / 2, lower = (count_ - 1) / 2;
+  if (lower >= below_ && upper - below_ < values_.size()) {
+    std::vector<double> values = values_;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(upper - below_);
+    std::nth_element(values.begin(), middle, values.end());
+    return lower == upper ? *middle : 0.5 * (*middle + *std::max_element(values.begin(), middle));
+  }
   // The value at half of the way through, as if those of a bin lay evenly in it.
   double left = 0.5 * static_cast<double>(count_);
   for (std::size_t bin = 0; bin < bins_.size(); ++bin) {

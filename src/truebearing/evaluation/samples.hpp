@@ -8,14 +8,16 @@
 #include <cstdint>
 #include <vector>
 
+#include "truebearing/core/constants.hpp"
 #include "truebearing/evaluation/statistics.hpp"
 
 namespace truebearing {
 
 /// So many runs are kept one by one.
 inline constexpr std::size_t kMostRunsApart = std::size_t{1} << 16;
-/// Of errors of all steps of all runs a median is made of the values themselves where there are no more than this.
-inline constexpr std::size_t kMostValuesApart = std::size_t{1} << 22;
+/// Of errors of all steps of all runs, of all trackers and quantities together, so many are kept one by one for medians:
+/// 160 megabytes.
+inline constexpr std::size_t kMostValuesApart = std::size_t{5} << 22;
 
 /// Squared errors run by run. Beyond kMostRunsApart neighbours are taken together, and the jackknife leaves out groups.
 class RunErrors {
@@ -30,7 +32,8 @@ class RunErrors {
   std::size_t in_last_ = 0;
 };
 
-/// The middle of values >= 0. So many are kept one by one; more are counted in bins as wide as 1/4096 of what they hold.
+/// The middle of values >= 0. So many are kept one by one; of more, those about the middle, and those on either side are
+/// counted. Where the middle wanders away from what was kept, it is told from bins as wide as 1/4096 of what they hold.
 class MedianOf {
  public:
   explicit MedianOf(std::size_t kept_apart = kMostRunsApart) : kept_apart_(kept_apart) {}
@@ -38,10 +41,14 @@ class MedianOf {
   double value() const;
 
  private:
+  void narrow();
+
   std::size_t kept_apart_;
-  std::vector<double> values_;
-  std::vector<std::uint32_t> bins_;  // empty while values are kept
-  std::size_t count_ = 0;            // in them
+  std::vector<double> values_;  // all from low_ to high_
+  double low_ = -kInfinity, high_ = kInfinity;
+  std::size_t below_ = 0;            // values that are left of those
+  std::size_t count_ = 0;            // of all
+  std::vector<std::uint32_t> bins_;  // of all; empty while all are kept
 };
 
 /// Runs for which something is so, of those that count.

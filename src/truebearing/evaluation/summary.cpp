@@ -76,11 +76,11 @@ void SummaryTally::QuantityTally::add(const RunScore& run, std::size_t quantity,
   }
 }
 
-SummaryTally::SummaryTally(std::string name, const Scorer& scorer, const ScoringRule& rule, std::size_t expected)
+SummaryTally::SummaryTally(std::string name, const Scorer& scorer, const ScoringRule& rule, std::size_t kept_apart)
     : name_(std::move(name)),
       scorer_(scorer),
       rule_(rule),
-      quantities_(scorer.quantities().size(), QuantityTally(expected > kMostValuesApart ? 0 : kMostValuesApart)),
+      quantities_(scorer.quantities().size(), QuantityTally(kept_apart)),
       quantile_(chi_square_quantile(0.95, scorer.dimension())) {}
 
 void SummaryTally::add_consistency(const RunScore& run) {

@@ -45,9 +45,10 @@ struct TrackerSummary {
 /// The runs of one tracker, added in the order of their numbers, and gone afterwards.
 class SummaryTally {
  public:
-  /// The scorer and the rule must outlive it. expected: how many errors there will be of a quantity, over all runs and
-  /// steps (samples.hpp).
-  SummaryTally(std::string name, const Scorer& scorer, const ScoringRule& rule, std::size_t expected = 0);
+  /// The scorer and the rule must outlive it. kept_apart: how many errors of a quantity are kept for its median
+  /// (samples.hpp).
+  SummaryTally(std::string name, const Scorer& scorer, const ScoringRule& rule,
+               std::size_t kept_apart = kMostValuesApart);
   void add(const RunScore& run);
   TrackerSummary summary() const;
 

@@ -40,6 +40,8 @@ void train(const TrainArguments& options) {
   for (const std::string& name : names) {
     own.push_back(study.tracker(name).correction->model);
     outputs.push_back(options.output.empty() ? own.back().string() : options.output);
+    if (study.tracker(name).correction->design.network == NetworkKind::recurrent && is_standard_output(outputs.back()))
+      throw InputError("-o", "is one stream, and the model of \"" + name + "\" two files", "a file's name");
   }
   check_products(study, outputs, own);
   const CorrectionModels models =
@@ -48,8 +50,6 @@ void train(const TrainArguments& options) {
     const CorrectionModel& model = *models.at(names[i]);
     if (weights_name(model).empty()) {
       write_output(outputs[i], model_text(model));
-    } else if (is_standard_output(outputs[i])) {
-      throw InputError("-o", "is one stream, and the model two files", "a file's name");
     } else {
       write_model_file(outputs[i], model);
     }

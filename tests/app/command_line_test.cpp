@@ -91,7 +91,8 @@ TEST(Program, BadInputIsStatus1AndOneLineThatNamesWhereAndWhat) {
       {"tune plain.toml", "tune"},
       {"train plain.toml", "corrected"},
       {"train small.toml --tracker plain", "plain"},
-      {"train small.toml --tracker nfn", "did you mean \"nfnn\""}};
+      {"train small.toml --tracker nfn", "did you mean \"nfnn\""},
+      {"train manoeuvre_2d --tracker gru -o -", "two files"}};
   for (const auto& [arguments, says] : cases) {
     const Outcome outcome = run(folder, arguments);
     EXPECT_EQ(outcome.status, 1) << arguments;

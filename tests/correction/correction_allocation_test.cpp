@@ -12,6 +12,7 @@
 #include "tests/support/recurrent_models.hpp"
 #include "truebearing/core/constants.hpp"
 #include "truebearing/correction/corrected_tracker.hpp"
+#include "truebearing/correction/network.hpp"
 #include "truebearing/evaluation/tracker_set.hpp"
 #include "truebearing/tracker/filter_bank.hpp"
 #include "truebearing/tracker/particle_limit.hpp"
@@ -123,24 +124,17 @@ TEST(ParticleLimit, StepsAllocateNothing) {
   EXPECT_GT(tracker.fresh_starts(), 0);
 }
 
-TEST(CorrectedTracker, StepsInThePlaneAllocateNothing) {
-  CorrectedTracker tracker(testing::plane_ensemble(), testing::shared(testing::plane_model(1)));
-  const std::vector<Measurement> log = testing::plane_log(1, 100);
-  for (int k = 0; k < 5; ++k) tracker.step(log[static_cast<std::size_t>(k)]);
-  EXPECT_EQ(allocations_of([&] {
-              for (std::size_t k = 5; k < log.size(); ++k) tracker.step(log[k]);
-            }),
-            0);
-}
-
-TEST(GatedRecurrent, StepsAllocateNothing) {
-  CorrectedTracker tracker(testing::plane_ensemble(), testing::shared(testing::recurrent_plane_model(1)));
-  const std::vector<Measurement> log = testing::plane_log(1, 100);
-  for (int k = 0; k < 5; ++k) tracker.step(log[static_cast<std::size_t>(k)]);
-  EXPECT_EQ(allocations_of([&] {
-              for (std::size_t k = 5; k < log.size(); ++k) tracker.step(log[k]);
-            }),
-            0);
+TEST(CorrectedTracker, StepsInThePlaneAllocateNothingWithEitherNetwork) {
+  for (const CorrectionModel& model : {testing::plane_model(1), testing::recurrent_plane_model(1)}) {
+    CorrectedTracker tracker(testing::plane_ensemble(), testing::shared(model));
+    const std::vector<Measurement> log = testing::plane_log(1, 100);
+    for (int k = 0; k < 5; ++k) tracker.step(log[static_cast<std::size_t>(k)]);
+    EXPECT_EQ(allocations_of([&] {
+                for (std::size_t k = 5; k < log.size(); ++k) tracker.step(log[k]);
+              }),
+              0)
+        << describe(model.network);
+  }
 }
 
 // A tracker that allocates in its steps must be caught, wherever it sits.

@@ -380,6 +380,30 @@ class PlaneTrackers {
   FeatureExtractor extractor_;
 };
 
+// Courses in degrees; a turn to starboard is positive. A record that
+// uses no measurement is held against the last that did, and leaves no trace.
+TEST(FeatureExtractor, FrameTurnIsTheAngleSinceTheLastMeasurementUsed) {
+  FeatureExtractor extractor({{.kind = FeatureKind::frame_turn}}, plane_space(), Frame::track,
+                             [](const std::string&) { return kAll; });
+  const auto turned = [&](double course_deg, StepStatus status = StepStatus::ok) {
+    StepRecord record;
+    record.space = &plane_space();
+    const double course = course_deg * kPi / 180.0;
+    record.x = Eigen::Vector4d(0.0, 0.0, 50.0 * std::sin(course), 50.0 * std::cos(course));
+    record.P = Eigen::Matrix4d::Identity();
+    record.status = status;
+    if (status == StepStatus::ok)
+      record.innovation =
+          Innovation{BoundedVector::Zero(2), BoundedVector::Zero(2), BoundedMatrix::Identity(2, 2), 0.0};
+    return feature(extractor, record) * 180.0 / kPi;
+  };
+  EXPECT_EQ(turned(90.0), 0.0);
+  EXPECT_NEAR(turned(60.0), -30.0, 1e-9);
+  EXPECT_NEAR(turned(100.0, StepStatus::coasted), 40.0, 1e-9);
+  EXPECT_NEAR(turned(60.0), 0.0, 1e-9);
+  EXPECT_NEAR(turned(75.0), 15.0, 1e-9);
+}
+
 std::vector<FeatureSpec> plane_features() {
   std::vector<FeatureSpec> specs{{.kind = FeatureKind::log_step},
                                  {.kind = FeatureKind::log_nis_average, .alpha = 0.2, .offset = 0.05},

@@ -124,6 +124,32 @@ TEST(Teacher, TeachesTheFirstStepInEverySoManySeconds) {
       EXPECT_EQ(some.X.row(7 * run + i), all.X.row(30 * run + taught[static_cast<std::size_t>(i)]));
 }
 
+// Networks that remember see every row; what is not taught is there, and said not to be.
+TEST(Teacher, WholeTracksHoldTheRowsThatAreNotTaught) {
+  const LineScenario scenario = testing::radar_family(30);
+  CorrectionSpec late = spec(2);
+  late.training.from_step = 11;
+  TeacherOptions options;
+  options.whole_tracks = true;
+  const TeacherSet taught = collect_teacher_set(ensemble(), late, scenario, {});
+  const TeacherSet all = collect_teacher_set(ensemble(), spec(2), scenario, {});
+  const TeacherSet whole = collect_teacher_set(ensemble(), late, scenario, options);
+  ASSERT_EQ(whole.X.rows(), 2 * 30);
+  EXPECT_EQ(whole.X, all.X);
+  ASSERT_EQ(whole.begins.size(), 60u);
+  for (Eigen::Index row = 0; row < 60; ++row) {
+    const auto i = static_cast<std::size_t>(row);
+    const Eigen::Index step = row % 30;
+    EXPECT_EQ(whole.begins[i], step == 0) << row;
+    EXPECT_EQ(whole.is_taught(row), step >= 10) << row;
+    EXPECT_TRUE(whole.used[i]) << row;
+    if (step >= 10)
+      EXPECT_EQ(whole.Y.row(row), taught.Y.row(20 * (row / 30) + step - 10)) << row;
+    else
+      EXPECT_TRUE((whole.Y.row(row).array() == 0.0).all()) << row;
+  }
+}
+
 TEST(Teacher, RowsAreTheSameForAnyNumberOfThreads) {
   const LineScenario scenario = testing::radar_family(30);
   const TeacherSet one = collect_teacher_set(ensemble(), spec(20), scenario, {.threads = 1, .progress = {}});

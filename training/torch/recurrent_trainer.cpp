@@ -14,18 +14,13 @@
 #include <utility>
 #include <vector>
 
-#include "training/recurrent_training.hpp"
+#include "training/torch/recurrent_trainer.hpp"
 #include "truebearing/core/random.hpp"
-
-extern "C" void openblas_set_num_threads(int) __attribute__((weak));
 
 namespace truebearing {
 namespace {
 
 using torch::Tensor;
-
-constexpr double kLargestGradient = 1.0;  // its norm
-constexpr double kWarmUp = 0.3, kFirstRate = 1.0 / 25.0, kLastRate = 1e-4;
 
 struct Net {
   torch::nn::Linear encoder;
@@ -123,19 +118,6 @@ Tensor squared_errors(const Net& net, const Batch& batch) {
   return sum;
 }
 
-double one_cycle(double progress) {
-  const auto between = [](double from, double to, double share) {
-    return to + 0.5 * (from - to) * (1.0 + std::cos(M_PI * share));
-  };
-  return progress < kWarmUp ? between(kFirstRate, 1.0, progress / kWarmUp)
-                            : between(1.0, kLastRate, (progress - kWarmUp) / (1.0 - kWarmUp));
-}
-
-void one_thread_each() {
-  at::set_num_threads(1);
-  if (openblas_set_num_threads) openblas_set_num_threads(1);
-}
-
 // Both halves of some work, at once where `two_threads`.
 void halves(bool two_threads, const std::function<void(int)>& work) {
   if (!two_threads) {
@@ -173,13 +155,6 @@ double mean_squared_error(const Net& net, const RecurrentRows& rows, const std::
     }
   });
   return (sums[0] + sums[1]) / ((taught[0] + taught[1]) * static_cast<double>(rows.targets.rows()));
-}
-
-Eigen::MatrixXf matrix(const Tensor& tensor) {
-  const Tensor values = tensor.detach().contiguous();
-  const auto rows = values.size(0), columns = values.dim() == 2 ? values.size(1) : 1;
-  using ByRows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  return Eigen::Map<const ByRows>(values.data_ptr<float>(), rows, columns);
 }
 
 void keep(const Net& net, GatedRecurrent::Parameters& parameters) {
@@ -285,107 +260,8 @@ Eigen::MatrixXf answers(const GatedRecurrent::Parameters& parameters, const Eige
   return matrix(output->forward(std::get<0>(gru->forward(x))).squeeze(1)).transpose();
 }
 
-// The hidden states (H x N) of a network at the taught rows, of tracks or their mirror images.
-Eigen::MatrixXf hidden_states(const RecurrentRows& rows, const GatedRecurrent::Parameters& parameters, bool mirror,
-                              Eigen::Index count) {
-  GatedRecurrent::Parameters raw = parameters;  // for inputs that are standardised already
-  raw.input_mean.setZero();
-  raw.input_scale.setOnes();
-  raw.input_clip = 1e6;
-  const Eigen::Index n = raw.output_scale.size(), entries = n * (n + 1) / 2;
-  raw.covariance_weight = Eigen::MatrixXf::Zero(entries, raw.weight_hh.cols());  // which is what is sought
-  raw.covariance_bias = Eigen::VectorXf::Zero(entries);
-  const GatedRecurrent network(raw);
-  Eigen::MatrixXf states(network.memory(), count);
-  NetworkMemory kept = NetworkMemory::Zero(network.memory()), memory;
-  NetworkAnswer answer;
-  Eigen::Index next = 0;
-  for (Eigen::Index row = 0; row < rows.inputs.cols(); ++row) {
-    const auto i = static_cast<std::size_t>(row);
-    if (rows.begins[i]) kept.setZero();
-    memory = kept;
-    Eigen::VectorXf inputs = rows.inputs.col(row);
-    if (mirror) inputs = inputs.cwiseProduct(rows.parity);
-    network.answer(inputs.cast<double>(), memory, answer);
-    if (rows.used[i]) kept = memory;
-    if (rows.taught[i]) states.col(next++) = memory;
-  }
-  return states;
-}
-
-double fit_covariance(const RecurrentRows& rows, const Eigen::MatrixXf& errors, std::uint64_t seed,
-                      const RecurrentProgress& progress, GatedRecurrent::Parameters& parameters) {
-  constexpr int kLeastEpochs = 8, kLeastSteps = 400, kRows = 4096;
-  constexpr double kRate = 0.01;
-  one_thread_each();
-  torch::manual_seed(seed);
-  const auto n = errors.rows(), H = parameters.weight_hh.cols(), entries = n * (n + 1) / 2;
-  Eigen::Index count = 0;
-  for (const bool taught : rows.taught) count += taught;
-  const bool mirrors = rows.parity.size() > 0;
-  std::vector<Tensor> states, targets;
-  Eigen::MatrixXf taught(n, count);
-  Eigen::Index next = 0;
-  for (Eigen::Index row = 0; row < errors.cols(); ++row)
-    if (rows.taught[static_cast<std::size_t>(row)]) taught.col(next++) = errors.col(row);
-  for (const bool mirror : {false, true}) {
-    if (mirror && !mirrors) continue;
-    Eigen::MatrixXf h = hidden_states(rows, parameters, mirror, count);
-    Eigen::MatrixXf e = mirror ? Eigen::MatrixXf(rows.out_parity.asDiagonal() * taught) : taught;
-    states.push_back(torch::from_blob(h.data(), {count, H}).clone());
-    targets.push_back(torch::from_blob(e.data(), {count, n}).clone());
-  }
-  const Tensor h = torch::cat(states), e = torch::cat(targets);
-  torch::nn::Linear head(H, entries);
-  {
-    const torch::NoGradGuard guard;
-    head->weight.zero_();
-    head->bias.zero_();
-    const Tensor deviation = e.square().mean(0).sqrt().clamp_min(1e-6);
-    for (std::int64_t i = 0; i < n; ++i) head->bias[i * (i + 1) / 2 + i] = deviation[i].log();
-  }
-  torch::optim::Adam adam(head->parameters(), torch::optim::AdamOptions(kRate));
-  // - ln of the Gaussian density of e under C C', without its constant: sum ln C_ii + |C^-1 e|^2 / 2, by substitution.
-  const auto cost = [&](const Tensor& memories, const Tensor& found) {
-    const Tensor c = head->forward(memories);
-    std::vector<Tensor> whitened;
-    Tensor sum = torch::zeros({memories.size(0)});
-    for (std::int64_t i = 0; i < n; ++i) {
-      Tensor rest = found.select(1, i);
-      for (std::int64_t j = 0; j < i; ++j)
-        rest = rest - c.select(1, i * (i + 1) / 2 + j) * whitened[static_cast<std::size_t>(j)];
-      const Tensor logarithm = c.select(1, i * (i + 1) / 2 + i).clamp(-20.0, 20.0);
-      whitened.push_back(rest * torch::exp(-logarithm));
-      sum = sum + logarithm + 0.5 * whitened.back().square();
-    }
-    return sum.mean();
-  };
-  double mean = 0.0;
-  const std::int64_t batches = (h.size(0) + kRows - 1) / kRows;
-  const auto epochs = static_cast<int>(std::max<std::int64_t>(kLeastEpochs, (kLeastSteps + batches - 1) / batches));
-  for (int epoch = 0; epoch < epochs; ++epoch) {
-    const Tensor order = torch::randperm(h.size(0));
-    mean = 0.0;
-    for (std::int64_t b = 0; b < batches; ++b) {
-      const Tensor chosen = order.slice(0, b * kRows, std::min<std::int64_t>((b + 1) * kRows, h.size(0)));
-      const Tensor batch = cost(h.index_select(0, chosen), e.index_select(0, chosen));
-      adam.zero_grad();
-      batch.backward();
-      torch::nn::utils::clip_grad_norm_(head->parameters(), kLargestGradient);
-      static_cast<torch::optim::AdamOptions&>(adam.param_groups()[0].options())
-          .lr(kRate * one_cycle(static_cast<double>(epoch * batches + b) / static_cast<double>(epochs * batches)));
-      adam.step();
-      mean += batch.item<double>() / static_cast<double>(batches);
-    }
-    if (progress) progress(epoch + 1, epochs, mean);
-  }
-  parameters.covariance_weight = matrix(head->weight);
-  parameters.covariance_bias = matrix(head->bias);
-  return mean;
-}
-
 }  // namespace
 }  // namespace truebearing
 
 extern "C" [[gnu::visibility("default")]] const truebearing::RecurrentModule truebearing_recurrent_module{
-    &truebearing::train, &truebearing::fit_covariance, &truebearing::answers};
+    &truebearing::train, &truebearing::fit_covariance_head, &truebearing::answers};

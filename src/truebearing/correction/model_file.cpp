@@ -72,13 +72,6 @@ OrderedJson feature_json(const FeatureSpec& feature) {
   return json;
 }
 
-const FuzzyNetwork::Parameters& parameters_of(const RuleBase& rules) {
-  return rules.network.parameters();
-}
-const GatedRecurrent::Parameters& parameters_of(const GatedRecurrent& network) {
-  return network.parameters();
-}
-
 OrderedJson normalisation_json(const auto& parameters) {
   return {{"input_mean", array_json(parameters.input_mean)},
           {"input_scale", array_json(parameters.input_scale)},
@@ -233,7 +226,7 @@ std::string model_text(const CorrectionModel& model) {
   if (model.design.output_in_sigma) json["output_in"] = kSigma;
   json["features"] = OrderedJson::array();
   for (const FeatureSpec& feature : model.design.features) json["features"].push_back(feature_json(feature));
-  std::visit([&](const auto& kind) { json["normalisation"] = normalisation_json(parameters_of(kind)); }, model.network);
+  std::visit([&](const auto& kind) { json["normalisation"] = normalisation_json(kind.parameters()); }, model.network);
   json["gate"] = nullptr;
   if (model.gate)
     json["gate"] = {{"low", array_json(model.gate->low)},

@@ -3,6 +3,7 @@
 //
 //     int inputs() const, outputs() const
 //     int memory() const                 how many numbers it remembers of a track; 0 where each step stands alone
+//     const Parameters& parameters() const    what was learned, with the normalisation of inputs and outputs
 //     void answer(inputs, memory, answer) const    one step of a track; no allocation
 //     void check(const CorrectionDesign&, int state) const        throws InputError where its parts disagree
 //

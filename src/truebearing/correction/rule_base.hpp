@@ -27,6 +27,7 @@ struct RuleBase {
   int inputs() const { return network.inputs(); }
   int outputs() const { return network.outputs(); }
   int memory() const { return 0; }
+  const FuzzyNetwork::Parameters& parameters() const { return network.parameters(); }
   void answer(const NetworkInputs& inputs, NetworkMemory& memory, NetworkAnswer& answer) const;
   void check(const CorrectionDesign& design, int state) const;
 };

@@ -82,14 +82,60 @@ EIGEN_ALWAYS_INLINE bool is_positive_definite(const Eigen::Matrix<Scalar, N, N>&
   return valid;
 }
 
+namespace detail {
+
+/// Says that A is positive definite, or nothing: two variables are eliminated at a time and nothing is divided, for
+/// which rest is det(B) times the Schur complement of the leading block B (2 x 2). What leaves the range of Scalar on
+/// the way, as products of up to N variances may, is not said to be.
+template <int N, typename Scalar>
+EIGEN_ALWAYS_INLINE bool is_plainly_positive_definite(const Eigen::Matrix<Scalar, N, N>& A) {
+  constexpr Scalar kMax = std::numeric_limits<Scalar>::max();
+  if constexpr (N == 1) {
+    return (A(0, 0) > 0) & (A(0, 0) <= kMax);
+  } else {
+    const Scalar det = A(0, 0) * A(1, 1) - A(1, 0) * A(1, 0);
+    const bool leads = (A(0, 0) > 0) & (det > 0) & (det <= kMax);
+    if constexpr (N == 2) {
+      return leads;
+    } else {
+      Eigen::Matrix<Scalar, N - 2, N - 2> rest;
+      for (int j = 2; j < N; ++j) {  // det B^-1 A_j, and its products with the others
+        const Scalar u = A(1, 1) * A(j, 0) - A(1, 0) * A(j, 1), v = A(0, 0) * A(j, 1) - A(1, 0) * A(j, 0);
+        for (int i = j; i < N; ++i) rest(i - 2, j - 2) = det * A(i, j) - (u * A(i, 0) + v * A(i, 1));
+      }
+      return leads & is_plainly_positive_definite<N - 2, Scalar>(rest);
+    }
+  }
+}
+
+template <int N, typename Scalar>
+EIGEN_ALWAYS_INLINE bool is_positive_definite_when_lifted(Eigen::Matrix<Scalar, N, N> A) {
+  const Eigen::Matrix<Scalar, N, 1> slack = semidefinite_slack<N, Scalar>(A);
+  for (int i = 0; i < N; ++i) A(i, i) += slack(i);
+  return is_positive_definite<N, Scalar>(A);
+}
+
+/// The same, kept out of a filter's step, which it would push out of registers.
+template <int N, typename Scalar>
+[[gnu::noinline, gnu::cold]] bool is_positive_definite_when_lifted_aside(const Eigen::Matrix<Scalar, N, N>& A) {
+  return is_positive_definite_when_lifted<N, Scalar>(A);
+}
+
+}  // namespace detail
+
 /// True where A is finite and its correlation matrix has no eigenvalue below -8 n eps, which is about as far as
-/// rounding takes one that was positive semi-definite.
+/// rounding takes one that was positive semi-definite. Nearly every matrix of a filter is plainly so: its divisions
+/// took most of a step's time.
 template <int N, typename Scalar>
 EIGEN_ALWAYS_INLINE bool is_positive_semidefinite(const Eigen::Matrix<Scalar, N, N>& A) {
-  const Eigen::Matrix<Scalar, N, 1> slack = semidefinite_slack<N, Scalar>(A);
-  Eigen::Matrix<Scalar, N, N> lifted = A;
-  for (int i = 0; i < N; ++i) lifted(i, i) += slack(i);
-  return is_positive_definite<N, Scalar>(lifted);
+  if (detail::is_plainly_positive_definite<N, Scalar>(A)) [[likely]]
+    return true;
+  if constexpr (N > 2) {
+    const Eigen::Matrix<Scalar, N, N> copy = A;  // so that A itself has no address
+    return detail::is_positive_definite_when_lifted_aside<N, Scalar>(copy);
+  } else {
+    return detail::is_positive_definite_when_lifted<N, Scalar>(A);
+  }
 }
 
 /// Lower triangular L with L L' = A, up to some n eps of the variances; NaN where A is not positive semi-definite.
@@ -111,27 +157,49 @@ Eigen::Matrix<Scalar, N, N> semidefinite_root(const Eigen::Matrix<Scalar, N, N>&
   return L;
 }
 
+/// Upper triangular U with U U' = A: the same from the last variable to the first.
+template <int N, typename Scalar>
+EIGEN_ALWAYS_INLINE Eigen::Matrix<Scalar, N, N> upper_semidefinite_root(const Eigen::Matrix<Scalar, N, N>& A) {
+  Eigen::Matrix<Scalar, N, N> R, U;
+  for (int j = 0; j < N; ++j)
+    for (int i = 0; i < N; ++i) R(i, j) = A(N - 1 - i, N - 1 - j);
+  const Eigen::Matrix<Scalar, N, N> L = semidefinite_root<N, Scalar>(R);
+  for (int j = 0; j < N; ++j)
+    for (int i = 0; i < N; ++i) U(i, j) = L(N - 1 - i, N - 1 - j);
+  return U;
+}
+
 /// W (rows x cols, cols >= rows) becomes W Theta = [0, U] with Theta orthogonal, U upper triangular, diagonal >= 0: row
 /// by row from the last, Givens rotations of the columns. Rotations, because they multiply where a Householder
-/// reflection subtracts: columns of very different size keep their digits (Bierman's example: 1e-15 against 1e-7).
+/// reflection subtracts: columns of very different size keep their digits (Bierman's example: 1e-15 against 1e-7). The
+/// radii of a row are the roots of its partial sums of squares, so that none waits for another (Carlson 1973).
 template <int Rows, int Cols, typename Scalar>
-void triangularize(Eigen::Matrix<Scalar, Rows, Cols>& W) {
+EIGEN_ALWAYS_INLINE void triangularize(Eigen::Matrix<Scalar, Rows, Cols>& W) {
   static_assert(Cols >= Rows);
+#pragma GCC unroll 8
   for (int row = Rows - 1; row >= 0; --row) {
     const int pivot = row + Cols - Rows;
+    const Scalar sign = std::copysign(Scalar(1), W(row, pivot));
+#pragma GCC unroll 8
+    for (int i = 0; i < row; ++i) W(i, pivot) *= sign;
+    Scalar radius = sign * W(row, pivot), square = radius * radius;
+#pragma GCC unroll 16
     for (int j = 0; j < pivot; ++j) {
-      // Nothing to rotate: the identity, so that what is triangular already stays as it is, to the bit.
-      const bool rotate = !(W(row, j) == 0);
-      const Scalar radius = std::sqrt(W(row, pivot) * W(row, pivot) + W(row, j) * W(row, j));
-      const Scalar cosine = rotate ? W(row, pivot) / radius : std::copysign(Scalar(1), W(row, pivot));
-      const Scalar sine = rotate ? W(row, j) / radius : Scalar(0);
-      for (int i = 0; i <= row; ++i) {
+      const Scalar w = W(row, j);
+      if (w == 0) continue;  // nothing to rotate: what is triangular already stays as it is, to the bit
+      square += w * w;
+      const Scalar next = std::sqrt(square), inverse = 1 / next;
+      const Scalar cosine = radius * inverse, sine = w * inverse;
+#pragma GCC unroll 8
+      for (int i = 0; i < row; ++i) {
         const Scalar rotated = cosine * W(i, pivot) + sine * W(i, j);
         W(i, j) = cosine * W(i, j) - sine * W(i, pivot);
         W(i, pivot) = rotated;
       }
       W(row, j) = 0;
+      radius = next;
     }
+    W(row, pivot) = radius;
   }
 }
 

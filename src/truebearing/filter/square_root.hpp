@@ -45,7 +45,7 @@ struct SquareRoot {
   static bool predict(const Eigen::Matrix<Scalar, N, N>& F, const Eigen::Matrix<Scalar, N, N>& Q,
                       Eigen::Matrix<Scalar, N, N>& U) {
     Eigen::Matrix<Scalar, N, 2 * N> array;
-    put(semidefinite_root<N, Scalar>(Q), array, 0, 0);
+    put(upper_semidefinite_root<N, Scalar>(Q), array, 0, 0);  // as F U mostly is: less to rotate
     put(product(F, U), array, 0, N);
     triangularize<N, 2 * N, Scalar>(array);
     take(array, 0, N, U);

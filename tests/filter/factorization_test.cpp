@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "truebearing/filter/factorization.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "truebearing/core/constants.hpp"
+#include "truebearing/core/random.hpp"
+
+namespace truebearing::factorization_test {
+namespace {
+
+template <typename Size>
+class SquareMatrices : public ::testing::Test {
+ public:
+  static constexpr int N = Size::value;
+  using Matrix = Eigen::Matrix<double, N, N>;
+  using Vector = Eigen::Matrix<double, N, 1>;
+
+  // A correlation matrix with eigenvalues from `least` up, its variances drawn over `decades` on both sides of `scale`.
+  Matrix covariance(double least, double scale, double decades) {
+    const Matrix A = Matrix::NullaryExpr([&] { return random.normal(); });
+    Vector eigenvalues = Vector::NullaryExpr([&] { return random.uniform(0.5, 2.0); });
+    eigenvalues[0] = least;
+    const Matrix Q = Eigen::SelfAdjointEigenSolver<Matrix>(A + A.transpose()).eigenvectors();
+    Matrix P = Q * eigenvalues.asDiagonal() * Q.transpose();
+    for (int i = 0; i < N; ++i) {
+      const double sigma = std::sqrt(scale) * std::pow(10.0, random.uniform(-decades, decades) / 2.0);
+      P.row(i) *= sigma;
+      P.col(i) *= sigma;
+    }
+    return (P + P.transpose()) / 2.0;
+  }
+
+  RandomStream random{{.seed = N}, StreamId::test};
+};
+
+using Sizes =
+    ::testing::Types<std::integral_constant<int, 1>, std::integral_constant<int, 2>, std::integral_constant<int, 3>,
+                     std::integral_constant<int, 4>, std::integral_constant<int, 5>, std::integral_constant<int, 6>>;
+TYPED_TEST_SUITE(SquareMatrices, Sizes);
+
+// Products of variances leave the range of a double at both ends, and the answer stays.
+TYPED_TEST(SquareMatrices, PositiveOnesAreFoundToBeAtAnyScale) {
+  for (const double scale : {1e-290, 1e-150, 1e-30, 1.0, 1e30, 1e150, 1e290})
+    for (int k = 0; k < 200; ++k) {
+      const auto P = this->covariance(k % 2 ? 1e-6 : 0.5, scale, 8.0);
+      EXPECT_TRUE((is_positive_semidefinite<TestFixture::N, double>(P))) << scale << "\n" << P;
+    }
+}
+
+// Negative by far more than rounding makes it.
+TYPED_TEST(SquareMatrices, IndefiniteOnesAreFoundToBeAtAnyScale) {
+  for (const double scale : {1e-290, 1e-150, 1e-30, 1.0, 1e30, 1e150, 1e290})
+    for (int k = 0; k < 200; ++k) {
+      const auto P = this->covariance(k % 2 ? -1e-6 : -0.5, scale, 8.0);
+      EXPECT_FALSE((is_positive_semidefinite<TestFixture::N, double>(P))) << scale << "\n" << P;
+    }
+}
+
+TYPED_TEST(SquareMatrices, SingularOnesAreSemidefinite) {
+  constexpr int N = TestFixture::N;
+  using Matrix = typename TestFixture::Matrix;
+  EXPECT_TRUE((is_positive_semidefinite<N, double>(Matrix::Zero())));
+  EXPECT_TRUE((is_positive_semidefinite<N, double>(Matrix::Ones())));
+  Matrix one = Matrix::Zero();
+  one(N - 1, N - 1) = 1.0;
+  EXPECT_TRUE((is_positive_semidefinite<N, double>(one)));
+}
+
+TYPED_TEST(SquareMatrices, OnesThatAreNotFiniteAreNot) {
+  constexpr int N = TestFixture::N;
+  for (const double value : {kNaN, HUGE_VAL, -HUGE_VAL})
+    for (int j = 0; j < N; ++j)
+      for (int i = j; i < N; ++i) {
+        auto P = this->covariance(0.5, 1.0, 2.0);
+        P(i, j) = P(j, i) = value;
+        EXPECT_FALSE((is_positive_semidefinite<N, double>(P))) << P;
+      }
+}
+
+TYPED_TEST(SquareMatrices, RootsAreTriangularAndSquareToTheMatrix) {
+  constexpr int N = TestFixture::N;
+  for (int k = 0; k < 200; ++k) {
+    const auto P = this->covariance(1e-3, 1.0, 6.0);
+    const auto L = semidefinite_root<N, double>(P);
+    const auto U = upper_semidefinite_root<N, double>(P);
+    for (int j = 0; j < N; ++j)
+      for (int i = 0; i < N; ++i) {
+        const double size = std::sqrt(P(i, i) * P(j, j));
+        EXPECT_NEAR((L * L.transpose())(i, j), P(i, j), 1e-13 * size);
+        EXPECT_NEAR((U * U.transpose())(i, j), P(i, j), 1e-13 * size);
+        if (i < j) EXPECT_EQ(L(i, j), 0.0);
+        if (i > j) EXPECT_EQ(U(i, j), 0.0);
+      }
+  }
+}
+
+TYPED_TEST(SquareMatrices, TriangularizeKeepsTheProductAndWhatIsTriangular) {
+  constexpr int N = TestFixture::N;
+  using Wide = Eigen::Matrix<double, N, 2 * N>;
+  for (int k = 0; k < 200; ++k) {
+    const Wide W = Wide::NullaryExpr([&] { return this->random.uniform() < 0.3 ? 0.0 : this->random.normal(); });
+    Wide array = W;
+    triangularize<N, 2 * N, double>(array);
+    EXPECT_LE((array * array.transpose() - W * W.transpose()).norm(), 1e-14 * W.squaredNorm());
+    for (int j = 0; j < 2 * N; ++j)
+      for (int i = 0; i < N; ++i)
+        if (i > j - N) EXPECT_EQ(array(i, j), 0.0);
+    for (int i = 0; i < N; ++i) EXPECT_GE(array(i, N + i), 0.0);
+    const Wide before = array;
+    triangularize<N, 2 * N, double>(array);
+    EXPECT_EQ(array, before);
+  }
+}
+
+}  // namespace
+}  // namespace truebearing::factorization_test

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "tests/fuzz/estimators.hpp"
+#include "tests/fuzz/snapshot_files.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "truebearing/core/error.hpp"
 #include "truebearing/correction/model_file.hpp"
@@ -81,7 +82,7 @@ void read(std::uint8_t reader, const std::string& text) {
       read_file(text, Study::load);
       break;
     case 'h':
-      read_file(text, read_snapshot_log);
+      read_file(text, [](const std::filesystem::path& path) { read_snapshot_log(path); });
       break;
     default:
       throw InputError("hostile", "is for no reader");
@@ -94,7 +95,16 @@ bool read_hostile(std::span<const std::uint8_t> bytes) {
   if (bytes.empty()) return false;
   if (bytes.front() == 'e') return drive_estimator(bytes.subspan(1));
   try {
-    read(bytes.front(), std::string(bytes.begin() + 1, bytes.end()));
+    switch (const std::span<const std::uint8_t> rest = bytes.subspan(1); bytes.front()) {
+      case 'f':
+        read_made_snapshots(rest);
+        break;
+      case 'c':
+        read_answered_snapshots(rest);
+        break;
+      default:
+        read(bytes.front(), std::string(rest.begin(), rest.end()));
+    }
   } catch (const InputError&) {
     return false;
   }

@@ -6,11 +6,13 @@
 #include <hdf5.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <thread>
 #include <vector>
 
 #include "tests/support/error_message.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "truebearing/io/hdf5_server.hpp"
 
 namespace truebearing::hdf5_file_test {
 namespace {
@@ -19,6 +21,7 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using testing::error_message;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using testing::TemporaryFolder;
 
 std::string two_rows() {
@@ -188,6 +191,48 @@ TEST(Hdf5File, MoreNumbersThanOneBufferHolds) {
   const std::vector<double> values = read_all(folder.write("many.h5", writer.str()));
   ASSERT_EQ(values.size(), kRows * kColumns);
   for (std::size_t i = 0; i < values.size(); ++i) ASSERT_EQ(values[i], static_cast<double>(i));
+}
+
+// A process that a damaged file has made say anything.
+class Astray final : public Hdf5Respondent {
+ public:
+  explicit Astray(const Hdf5Answer& answer) : answer_(answer) {}
+
+  void ask(const Hdf5Question&) override { is_asked_ = true; }
+  bool receive(std::span<std::byte> bytes) override {
+    const Hdf5Answer opened;
+    const auto answer = std::as_bytes(std::span(is_asked_ ? &answer_ : &opened, 1));
+    if (bytes.size() != answer.size()) return false;
+    std::copy(answer.begin(), answer.end(), bytes.begin());
+    return true;
+  }
+  std::string end() override { return "went astray"; }
+
+ private:
+  Hdf5Answer answer_;
+  bool is_asked_ = false;
+};
+
+TEST(Hdf5File, WhatTheLibraryAnswersIsNotBelieved) {
+  const auto message = [](const Hdf5Answer& answer, const auto& ask) {
+    return error_message([&] { ask(Hdf5Reader("a.h5", std::make_unique<Astray>(answer))); });
+  };
+  Hdf5Answer answer;
+  answer.rank = kHdf5MaxRank + 1;
+  EXPECT_THAT(message(answer, [](const Hdf5Reader& reader) { reader.shape("data"); }),
+              AllOf(HasSubstr("a.h5: data: is said to have 33 dimensions"), HasSubstr("at most 32")));
+  answer = {};
+  answer.failed = 2;
+  answer.found.fill('x');
+  answer.valid.fill('y');
+  EXPECT_THAT(message(answer, [](const Hdf5Reader& reader) { reader.has("data"); }),
+              AllOf(HasSubstr("a.h5: data: xxx"), Not(HasSubstr(std::string(answer.found.size() + 1, 'x')))));
+  EXPECT_THAT(message({},
+                      [](const Hdf5Reader& reader) {
+                        std::vector<double> values(5);
+                        reader.read("data", values);
+                      }),
+              HasSubstr("a.h5: data: cannot be read: the HDF5 library went astray"));
 }
 
 TEST(Hdf5File, AlteredBytesGiveNumbersOrAnError) {

@@ -15,7 +15,7 @@
 
 namespace truebearing {
 
-class LimitedChild;
+class Hdf5Respondent;
 
 /// False where there is no file, and for pipes, which can be read only once.
 bool is_hdf5_file(const std::filesystem::path& path);
@@ -24,6 +24,8 @@ class Hdf5Reader {
  public:
   /// Throws InputError where the file is absent, none of HDF5 or truncated; what follows does where it is at fault.
   explicit Hdf5Reader(const std::filesystem::path& path);
+  /// Of a file that another has open (io/hdf5_server.hpp); `name` stands for it in messages.
+  Hdf5Reader(std::string name, std::unique_ptr<Hdf5Respondent> respondent);
   Hdf5Reader(const Hdf5Reader&) = delete;
   Hdf5Reader& operator=(const Hdf5Reader&) = delete;
   ~Hdf5Reader();
@@ -43,7 +45,7 @@ class Hdf5Reader {
 
  private:
   std::string name_;
-  std::unique_ptr<LimitedChild> process_;  ///< which has the file open
+  std::unique_ptr<Hdf5Respondent> respondent_;  ///< who has the file open
 };
 
 class Hdf5Writer {

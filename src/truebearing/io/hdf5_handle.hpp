@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What both who reads and who writes with libhdf5 needs: its objects, closed when they go, and its errors in one line.
-// For the .cpp files of this room alone.
+// For the .cpp files of this room and its tests alone.
 #pragma once
 
 #include <hdf5.h>

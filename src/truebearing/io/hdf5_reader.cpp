@@ -7,6 +7,7 @@
 #include <fstream>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "truebearing/core/error.hpp"
 #include "truebearing/io/hdf5_file.hpp"
@@ -15,21 +16,50 @@
 namespace truebearing {
 namespace {
 
-void receive(LimitedChild& process, std::span<std::byte> bytes, const std::string& where) {
-  if (!process.channel().receive(bytes))
-    throw InputError(where, fmt::format("cannot be read: the HDF5 library {}", process.end()), "a whole HDF5 file");
+class Process final : public Hdf5Respondent {
+ public:
+  explicit Process(const std::string& name) : child_([&name](Channel& channel) { serve_hdf5_file(name, channel); }) {}
+
+  void ask(const Hdf5Question& question) override { child_.channel().send(std::as_bytes(std::span(&question, 1))); }
+  bool receive(std::span<std::byte> bytes) override { return child_.channel().receive(bytes); }
+  std::string end() override { return child_.end(); }
+
+ private:
+  LimitedChild child_;
+};
+
+std::unique_ptr<Hdf5Respondent> process_for(const std::string& name) {
+  try {
+    return std::make_unique<Process>(name);
+  } catch (const std::system_error& no_child) {
+    throw InputError(name, fmt::format("cannot be read: {}", no_child.code().message()));
+  }
 }
 
-Hdf5Answer receive_answer(LimitedChild& process, const std::string& where) {
+void receive(Hdf5Respondent& respondent, std::span<std::byte> bytes, const std::string& where) {
+  if (!respondent.receive(bytes))
+    throw InputError(where, fmt::format("cannot be read: the HDF5 library {}", respondent.end()), "a whole HDF5 file");
+}
+
+// As far as it goes: nobody vouches for the zero at its end.
+template <std::size_t N>
+std::string text_of(const std::array<char, N>& text) {
+  return {text.begin(), std::find(text.begin(), text.end(), '\0')};
+}
+
+Hdf5Answer receive_answer(Hdf5Respondent& respondent, const std::string& where) {
   Hdf5Answer answer;
-  receive(process, std::as_writable_bytes(std::span(&answer, 1)), where);
-  if (answer.failed) throw InputError(where, answer.found.data(), answer.valid.data());
+  receive(respondent, std::as_writable_bytes(std::span(&answer, 1)), where);
+  if (answer.failed != 0) throw InputError(where, text_of(answer.found), text_of(answer.valid));
+  if (answer.rank > kHdf5MaxRank)
+    throw InputError(where, fmt::format("is said to have {} dimensions", answer.rank),
+                     fmt::format("at most {}", kHdf5MaxRank));
   return answer;
 }
 
-Hdf5Answer ask(LimitedChild& process, const Hdf5Question& question, const std::string& where) {
-  process.channel().send(std::as_bytes(std::span(&question, 1)));  // where nobody takes it, nobody answers
-  return receive_answer(process, where);
+Hdf5Answer ask(Hdf5Respondent& respondent, const Hdf5Question& question, const std::string& where) {
+  respondent.ask(question);
+  return receive_answer(respondent, where);
 }
 
 Hdf5Question question(Hdf5Question::About about, const std::string& dataset, std::uint64_t size = 0) {
@@ -66,40 +96,41 @@ Hdf5Reader::Hdf5Reader(const std::filesystem::path& path) : name_(path.string())
   std::ifstream file(path, std::ios::binary);
   if (!file) throw InputError(name_, fmt::format("cannot be opened: {}", std::strerror(errno)));
   if (!has_signature(file)) throw InputError(name_, "is no HDF5 file", "one that begins with the signature of HDF5");
-  try {
-    process_ = std::make_unique<LimitedChild>([this](Channel& channel) { serve_hdf5_file(name_, channel); });
-  } catch (const std::system_error& no_child) {
-    throw InputError(name_, fmt::format("cannot be read: {}", no_child.code().message()));
-  }
-  receive_answer(*process_, name_);
+  respondent_ = process_for(name_);
+  receive_answer(*respondent_, name_);
+}
+
+Hdf5Reader::Hdf5Reader(std::string name, std::unique_ptr<Hdf5Respondent> respondent)
+    : name_(std::move(name)), respondent_(std::move(respondent)) {
+  receive_answer(*respondent_, name_);
 }
 
 Hdf5Reader::~Hdf5Reader() = default;
 
 bool Hdf5Reader::has(const std::string& dataset) const {
-  return ask(*process_, question(Hdf5Question::About::existence, dataset), where(dataset)).exists;
+  return ask(*respondent_, question(Hdf5Question::About::existence, dataset), where(dataset)).exists != 0;
 }
 
 std::vector<std::uint64_t> Hdf5Reader::shape(const std::string& dataset) const {
-  const Hdf5Answer answer = ask(*process_, question(Hdf5Question::About::shape, dataset), where(dataset));
+  const Hdf5Answer answer = ask(*respondent_, question(Hdf5Question::About::shape, dataset), where(dataset));
   return {answer.lengths.begin(), answer.lengths.begin() + answer.rank};
 }
 
 void Hdf5Reader::check_holds(const std::string& dataset, std::uint64_t size) const {
-  ask(*process_, question(Hdf5Question::About::stored, dataset, size), where(dataset));
+  ask(*respondent_, question(Hdf5Question::About::stored, dataset, size), where(dataset));
 }
 
 void Hdf5Reader::read(const std::string& dataset, std::span<double> values) const {
-  ask(*process_, question(Hdf5Question::About::values, dataset, values.size()), where(dataset));
-  receive(*process_, std::as_writable_bytes(values), where(dataset));
-  receive_answer(*process_, where(dataset));
+  ask(*respondent_, question(Hdf5Question::About::values, dataset, values.size()), where(dataset));
+  receive(*respondent_, std::as_writable_bytes(values), where(dataset));
+  receive_answer(*respondent_, where(dataset));
 }
 
 std::optional<double> Hdf5Reader::attribute(const std::string& dataset, const std::string& name) const {
   Hdf5Question about = question(Hdf5Question::About::attribute, dataset);
   copy_hdf5_text(name, about.attribute);
-  const Hdf5Answer answer = ask(*process_, about, where(dataset) + ": " + name);
-  return answer.exists ? std::optional(answer.value) : std::nullopt;
+  const Hdf5Answer answer = ask(*respondent_, about, where(dataset) + ": " + name);
+  return answer.exists != 0 ? std::optional(answer.value) : std::nullopt;
 }
 
 }  // namespace truebearing

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The process that has an HDF5 file open: what it is asked, and what it answers.
+// The process that has an HDF5 file open: what it is asked, and what it answers. A damaged file may have made of that
+// process what it likes, so that an answer is believed no more than the file.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -23,9 +27,8 @@ struct Hdf5Question {
 };
 
 struct Hdf5Answer {
-  bool failed = false;
-  bool exists = false;
-  unsigned rank = 0;
+  std::uint8_t failed = 0, exists = 0;  ///< no bool, which is not any byte
+  std::uint32_t rank = 0;
   std::array<std::uint64_t, kHdf5MaxRank> lengths{};
   double value = 0.0;
   std::array<char, 512> found{}, valid{};  ///< where it failed
@@ -38,8 +41,26 @@ void copy_hdf5_text(std::string_view text, std::array<char, N>& to) {
   text.copy(to.data(), N - 1);
 }
 
+/// Whom a reader asks: the process, or in tests whoever stands in for it. Its first answer, that the file is open, comes
+/// unasked.
+class Hdf5Respondent {
+ public:
+  virtual ~Hdf5Respondent() = default;
+  /// Where nobody hears it, nobody answers.
+  virtual void ask(const Hdf5Question& question) = 0;
+  /// The next bytes of its answers; false where no more come.
+  virtual bool receive(std::span<std::byte> bytes) = 0;
+  /// Why no more come: "took too long".
+  virtual std::string end() = 0;
+};
+
+/// Sends the answer to a question about the file that libhdf5 has open under this number. Behind one about values come
+/// these, and then an answer that all of them were there; throws InputError where they were not.
+void answer_hdf5_question(std::int64_t file, const Hdf5Question& question,
+                          const std::function<void(std::span<const std::byte>)>& send);
+
 /// In the child (limited_child.hpp): answers until nobody asks. Where the file cannot be opened, or memory runs out, that
-/// is its last answer. Behind the answer about values come these, and then an answer that all of them were there.
+/// is its last answer.
 void serve_hdf5_file(const std::string& name, Channel& channel);
 
 }  // namespace truebearing

@@ -320,7 +320,10 @@ bool is_snapshot_log(const std::filesystem::path& path) {
 }
 
 Recording read_snapshot_log(const std::filesystem::path& path) {
-  const Hdf5Reader file(path);
+  return read_snapshot_log(Hdf5Reader(path));
+}
+
+Recording read_snapshot_log(const Hdf5Reader& file) {
   const SnapshotLayout layout = read_snapshot_layout(file);
   const std::vector<double> time_s = read_times(file, layout);
   TruthTable truth = read_truth(file, time_s);

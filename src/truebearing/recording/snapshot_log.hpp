@@ -24,6 +24,8 @@
 
 namespace truebearing {
 
+class Hdf5Reader;
+
 /// Whether the file is to be read as one: by the ending of its name, .h5 or .hdf5, or by what it begins with.
 bool is_snapshot_log(const std::filesystem::path& path);
 
@@ -31,6 +33,7 @@ bool is_snapshot_log(const std::filesystem::path& path);
 /// dataset and attribute; before anything is allocated where there are more than 4096 sensors, a million intervals, a
 /// million snapshots in one, 2 GiB of snapshots, 256 targets or ten million true states.
 Recording read_snapshot_log(const std::filesystem::path& path);
+Recording read_snapshot_log(const Hdf5Reader& file);
 
 /// Reads back as the same recording, angles to rounding; the same recording gives the same bytes. The file is the old
 /// or the whole new one (io/file.hpp). Throws InputError where the recording is not of one array, or too large to be

@@ -5,6 +5,7 @@
 
 #include "tests/support/fakes.hpp"
 #include "tests/support/frequency_runs.hpp"
+#include "truebearing/core/constants.hpp"
 #include "truebearing/filter/filter_kinds.hpp"
 #include "truebearing/filter/interacting_multiple_model.hpp"
 #include "truebearing/filter/kalman.hpp"
@@ -25,7 +26,7 @@ testing::FakeTracker oracle_of(const Recording& recording, double known_s) {
   const Eigen::Vector<double, 5> variances(1e4, 1e4, 1e-2, 1e-2, 1e-4);
   const auto say = [=](const Measurement& measurement, std::size_t, testing::FakeTracker::Said& said) {
     std::size_t now = 0;
-    while (recording.measurements[now].time_s < measurement.time_s) ++now;
+    while (recording.measurements[now].z[0] != measurement.z[0]) ++now;  // whatever its clock says
     said.records.push_back(
         testing::fake_record(plane_frequency_space(), measurement, recording.truth[0].x[now], variances.asDiagonal()));
     said.records.back().sensor = measurement.sensor;
@@ -43,11 +44,12 @@ std::unique_ptr<TrackedState> two_levels() {
 }
 
 PassiveSonarTracker sonar(const Recording& recording, PassiveSonarOptions options = {},
-                          const StateSpace& space = plane_frequency_space(), double known_s = 0.0) {
+                          const StateSpace& space = plane_frequency_space(), double known_s = 0.0,
+                          FilterTrackerOptions filter = {}) {
   options.hand_over_s = kHandOver_s;
   options.sensor = kFrequencySensor;
   return {options, std::make_unique<testing::FakeTracker>(oracle_of(recording, known_s)),
-          std::make_unique<FilterTracker>(space, two_levels(), sensor_of(kFrequencySensor), HandOverStart{})};
+          std::make_unique<FilterTracker>(space, two_levels(), sensor_of(kFrequencySensor), HandOverStart{}, filter)};
 }
 
 std::vector<Kind> kinds(const Tracker& tracker) {
@@ -172,6 +174,48 @@ TEST(PassiveSonarTracker, SaysWhenTheTargetTurns) {
   EXPECT_EQ(tracker.events()[1].kind, Kind::turn_began);
   EXPECT_GT(tracker.events()[1].time_s, 800.0);
   EXPECT_LT(tracker.events()[1].time_s, 900.0);
+}
+
+// In the middle of a log nothing is heard for longer than the filter may go without.
+TEST(PassiveSonarTracker, SaysWhenItsFilterWasGivenUpAndBeginsAnotherAsItBeganTheFirst) {
+  const Recording recording = frequency_run(5, 200);
+  constexpr std::size_t kSilent = 100, kHeardAgain = 110;
+  const FilterTrackerOptions options{.lost_after_s = 60.0};
+  PassiveSonarTracker tracker = sonar(recording, {}, plane_frequency_space(), 0.0, options);
+  const double again_s = recording.measurements[kHeardAgain].time_s;
+  double worst_m = 0.0;
+  for (std::size_t k = 0; k < recording.measurements.size(); ++k) {
+    if (k > kSilent && k < kHeardAgain) continue;
+    const Measurement& measurement = recording.measurements[k];
+    const auto records = tracker.step(measurement);
+    ASSERT_EQ(records.size(), 1u) << "the batch's, at " << measurement.time_s << " s";
+    EXPECT_EQ(records[0].time_s, measurement.time_s);
+    EXPECT_EQ(records[0].track, 0);
+    worst_m = std::max(worst_m, (records[0].x - recording.truth[0].x[k]).head<2>().norm());
+  }
+  EXPECT_LT(worst_m, 1000.0) << "ten of the batch's standard deviations";
+  ASSERT_EQ(kinds(tracker), (std::vector{Kind::handed_over, Kind::given_up, Kind::handed_over}));
+  EXPECT_EQ(tracker.events()[1].time_s, again_s);
+  EXPECT_NEAR(tracker.events()[2].time_s, again_s + kHandOver_s, 8.0);
+  EXPECT_GE(tracker.events()[2].time_s, again_s + kHandOver_s);
+}
+
+TEST(PassiveSonarTracker, FilterThatFailsIsGivenUpAtOnceAndItsFailuresStayCounted) {
+  const Recording recording = frequency_run(5, 100);
+  PassiveSonarTracker tracker = sonar(recording);
+  StepStatus last = StepStatus::ok;
+  for (std::size_t k = 0; k < recording.measurements.size(); ++k) {
+    Measurement measurement = recording.measurements[k];
+    const bool is_absurd = k >= 80 && k < 83;
+    if (is_absurd) measurement.sigma.setConstant(kInfinity);
+    const auto records = tracker.step(measurement);
+    ASSERT_EQ(records.size(), 1u);
+    if (is_absurd) last = records[0].status;
+  }
+  EXPECT_EQ(last, StepStatus::failed);
+  ASSERT_EQ(kinds(tracker), (std::vector{Kind::handed_over, Kind::given_up}));
+  EXPECT_EQ(tracker.events()[1].time_s, recording.measurements[82].time_s);
+  EXPECT_EQ(tracker.counts().failed, 3);
 }
 
 TEST(PassiveSonarTracker, BeginsAnewAfterAReset) {

@@ -40,6 +40,7 @@ class FilterTracker : public Successor {
   std::span<const StepRecord> step(const Measurement& measurement) override;
   void reset() override;
   void take_over(double time_s, const BoundedVector& x, const BoundedMatrix& P) override;
+  bool is_lost() const override { return lost_ || !begun_; }
   std::unique_ptr<Tracker> fresh() const override;
 
   const StateSpace& space() const override { return *space_; }

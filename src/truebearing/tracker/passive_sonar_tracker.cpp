@@ -33,6 +33,9 @@ void PassiveSonarTracker::reset() {
   filter_->reset();
   following_ = turning_ = false;
   events_.clear();
+  begun_s_ = 0.0;
+  events_before_ = 0;
+  counts_before_ = {};
   record_ = {};
   last_.reset();
   doubtful_.reset();
@@ -48,14 +51,15 @@ std::span<const StepRecord> PassiveSonarTracker::step(const Measurement& measure
   return following_ ? follow(measurement) : collect(measurement);
 }
 
-TrackerCounts PassiveSonarTracker::sum_of_counts() const {
-  TrackerCounts sum = batch_->counts();
-  const TrackerCounts more = filter_->counts();
-  sum.missing += more.missing;
-  sum.repeated += more.repeated;
-  sum.out_of_order += more.out_of_order;
-  sum.gated += more.gated;
-  sum.failed += more.failed;
+TrackerCounts PassiveSonarTracker::counts() const {
+  TrackerCounts sum = counts_before_;
+  for (const TrackerCounts& more : {batch_->counts(), following_ ? filter_->counts() : TrackerCounts()}) {
+    sum.missing += more.missing;
+    sum.repeated += more.repeated;
+    sum.out_of_order += more.out_of_order;
+    sum.gated += more.gated;
+    sum.failed += more.failed;
+  }
   return sum;
 }
 
@@ -71,18 +75,26 @@ bool PassiveSonarTracker::is_good_enough(const StepRecord& record) const {
 }
 
 std::span<const StepRecord> PassiveSonarTracker::collect(const Measurement& measurement) {
-  const std::span<const StepRecord> records = batch_->step(measurement);
+  Measurement since_begun = measurement;
+  since_begun.time_s -= begun_s_;
+  const std::span<const StepRecord> records = batch_->step(since_begun);
   // The batch may come to another view of the past with every solution: its list replaces what it said before.
-  events_.assign(batch_->events().begin(), batch_->events().end());
+  events_.resize(events_before_);
+  for (TrackEvent event : batch_->events()) {
+    event.time_s += begun_s_;
+    events_.push_back(event);
+  }
   if (records.empty()) return {};
-  const StepRecord& record = records.front();
-  cut(record, space(), record_);
-  remember(record);
+  const bool is_ready = is_good_enough(records.front());
+  cut(records.front(), space(), record_);
+  // Of a measurement that was not looked at, the time of the one before.
+  record_.time_s = record_.time_s == since_begun.time_s ? measurement.time_s : record_.time_s + begun_s_;
+  remember(record_);
   if (const auto now = heard(measurement)) last_ = now;
-  if (is_good_enough(record)) {
-    filter_->take_over(record.time_s, record.x, record.P);
+  if (is_ready) {
+    filter_->take_over(record_.time_s, records.front().x, records.front().P);
     following_ = true;
-    events_.push_back({TrackEvent::Kind::handed_over, record.time_s});
+    events_.push_back({TrackEvent::Kind::handed_over, record_.time_s});
   } else if (!options_.show_batch) {
     return {};
   }
@@ -136,23 +148,45 @@ void PassiveSonarTracker::notice_turn(const StepRecord& record) {
   events_.push_back({turning ? TrackEvent::Kind::turn_began : TrackEvent::Kind::turn_ended, record.time_s});
 }
 
-std::span<const StepRecord> PassiveSonarTracker::follow(const Measurement& measurement) {
-  const Source source = watch_source(measurement);
-  if (source == Source::steady) {
-    const std::span<const StepRecord> records = filter_->step(measurement);
-    if (records.empty()) return records;
-    notice_turn(records.front());
-    remember(records.front());
-    return records;
-  }
-  // The bearing alone; a new source begins as one that is heard for the first time.
-  Measurement bearing = measurement;
-  bearing.z[1] = std::numeric_limits<double>::quiet_NaN();
-  const std::span<const StepRecord> records = filter_->step(bearing);
+std::span<const StepRecord> PassiveSonarTracker::filtered(const Measurement& measurement) {
+  const std::span<const StepRecord> records = filter_->step(measurement);
   if (records.empty()) return records;
   notice_turn(records.front());
   remember(records.front());
-  if (source == Source::doubtful) return records;
+  if (!filter_->is_lost()) return records;
+  record_ = records.front();
+  give_up(measurement.time_s);
+  return {&record_, 1};
+}
+
+// The filter says nothing any more, or nothing that the next measurement goes on with. What it knew is as doubtful: a
+// batch begins as the first one did.
+void PassiveSonarTracker::give_up(double time_s) {
+  events_.push_back({TrackEvent::Kind::given_up, time_s});
+  counts_before_ = counts();
+  batch_->reset();
+  filter_->reset();
+  following_ = turning_ = false;
+  begun_s_ = time_s;
+  events_before_ = events_.size();
+  last_.reset();
+  doubtful_.reset();
+}
+
+std::span<const StepRecord> PassiveSonarTracker::follow(const Measurement& measurement) {
+  const Source source = watch_source(measurement);
+  std::optional<Measurement> bearing;  // alone, where the frequency is in doubt
+  if (source != Source::steady) {
+    bearing = measurement;
+    bearing->z[1] = std::numeric_limits<double>::quiet_NaN();
+  }
+  const std::span<const StepRecord> records = filtered(bearing ? *bearing : measurement);
+  if (records.empty() && filter_->is_lost()) {
+    give_up(measurement.time_s);
+    return collect(measurement);
+  }
+  if (records.empty() || !following_ || source != Source::changed) return records;
+  // A new source begins as one that is heard for the first time.
   record_ = records.front();
   if (const auto begun = options_.sensor.believe(plane_, measurement)) {
     filter_->take_over(measurement.time_s, begun->x, begun->P);

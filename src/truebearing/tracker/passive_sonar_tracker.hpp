@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What an operator of a passive sonar needs on one log of bearings and frequencies, as one Tracker (Kim and Song): a
 // batch estimate is made until it knows the range well enough; a filter takes it over, carried to that time, and goes
-// on from there, so that no measurement counts twice. Along the way it reports as events when the range became known,
-// when the filter took over, when the source changed its frequency and when the target turned.
+// on from there, so that no measurement counts twice. Where the filter is given up, a batch begins anew. Along the way
+// it reports as events when the range became known, when the filter took over, when it was given up, when the source
+// changed its frequency and when the target turned.
 #pragma once
 
 #include <limits>
@@ -17,7 +18,7 @@
 namespace truebearing {
 
 struct PassiveSonarOptions {
-  double hand_over_s = 0.0;  ///< not before this time
+  double hand_over_s = 0.0;  ///< not before this time; after a filter was given up, not before so much later
   /// Standard deviation of the range, in percent of it, from which on the batch estimate is good enough.
   double hand_over_percent = std::numeric_limits<double>::infinity();
   /// Two frequencies that follow each other differ by more than this many of their standard deviations by chance with
@@ -45,14 +46,15 @@ class PassiveSonarTracker final : public Tracker {
     return filter_->measures() ? filter_->measures() : batch_->measures();
   }
   RecordBlocks blocks() const override { return filter_->blocks(); }
-  TrackerCounts counts() const override { return following_ ? sum_of_counts() : batch_->counts(); }
+  TrackerCounts counts() const override;
   std::span<const TrackEvent> events() const override { return events_; }
 
  private:
   std::span<const StepRecord> collect(const Measurement& measurement);
   std::span<const StepRecord> follow(const Measurement& measurement);
+  std::span<const StepRecord> filtered(const Measurement& measurement);
+  void give_up(double time_s);
   bool is_good_enough(const StepRecord& record) const;
-  TrackerCounts sum_of_counts() const;
 
   struct Heard {
     double time_s;
@@ -73,6 +75,11 @@ class PassiveSonarTracker final : public Tracker {
   bool turning_ = false;
   std::vector<TrackEvent> events_;
   StepRecord record_;  // the batch's, in the space of the filter
+
+  // Of a batch after a filter that was given up: its time 0, and what was before.
+  double begun_s_ = 0.0;
+  std::size_t events_before_ = 0;
+  TrackerCounts counts_before_;
 
   std::optional<Heard> last_;      // the last frequency of the source as it is known
   std::optional<Heard> doubtful_;  // one that differs from it, until the next one tells

@@ -11,6 +11,9 @@ class Successor : public Tracker {
   /// Begins anew with x (k), P (k x k) at time_s: the first k components of its state, the others as its start says.
   /// What came before time_s must be in x; measurements from there on are to come.
   virtual void take_over(double time_s, const BoundedVector& x, const BoundedMatrix& P) = 0;
+
+  /// There is no track, or none that the next measurement will go on with: it has been given up.
+  virtual bool is_lost() const = 0;
 };
 
 }  // namespace truebearing

@@ -38,6 +38,7 @@ struct TrackEvent {
   enum class Kind : unsigned char {
     range_known,     ///< the measurements determine the target's range from here on
     handed_over,     ///< a batch estimate began a filter
+    given_up,        ///< that filter had no estimate any more; the batch begins anew
     source_changed,  ///< the target's frequency jumped; `value`: to so many Hz
     turn_began,      ///< the target left its course or speed
     turn_ended,
@@ -55,6 +56,8 @@ constexpr std::string_view to_string(TrackEvent::Kind kind) {
       return "range_known";
     case TrackEvent::Kind::handed_over:
       return "handed_over";
+    case TrackEvent::Kind::given_up:
+      return "given_up";
     case TrackEvent::Kind::source_changed:
       return "source_changed";
     case TrackEvent::Kind::turn_began:

@@ -209,11 +209,13 @@ Comparison compare(const TrackerSet& trackers, const std::vector<NamedScenario>&
     sets.push_back({scenarios[i].name, alone.comparison()});
     sets.back().comparison.time_s = set.time_s();
     sets.back().comparison.phases = set.phases();
+    sets.back().comparison.published = published_of(options.published, scenarios[i].name);
   }
   Comparison comparison = all.comparison();
   comparison.time_s = std::move(time_s);
   comparison.phases = std::move(phases);
   comparison.sets = std::move(sets);
+  comparison.published = published_of(options.published, {});
   return comparison;
 }
 

@@ -11,6 +11,7 @@
 #include "truebearing/evaluation/bound_summary.hpp"
 #include "truebearing/evaluation/comparison_details.hpp"
 #include "truebearing/evaluation/monte_carlo.hpp"
+#include "truebearing/evaluation/published.hpp"
 #include "truebearing/evaluation/summary.hpp"
 #include "truebearing/simulation/scenario.hpp"
 
@@ -26,8 +27,9 @@ struct ComparisonOptions {
   std::vector<std::string> bounds;                         ///< trackers that are bounds: reported as such too
   std::optional<TargetMotionBound> cramer_rao;             ///< at the times of the scoring
   std::optional<AngleBound> angle_bound;                   ///< of several targets at a line array
-  std::string global_minimum;  ///< the batch tracker whose costs the others' are compared with; or empty
-  bool details = false;        ///< keep what plots need besides
+  std::string global_minimum;           ///< the batch tracker whose costs the others' are compared with; or empty
+  std::vector<PublishedRow> published;  ///< of others, to stand beside the figures
+  bool details = false;                 ///< keep what plots need besides
   Progress progress;
 };
 
@@ -50,6 +52,7 @@ struct Comparison {
   std::optional<BoundSummary> cramer_rao;
   std::vector<AngleBoundSummary> angle_bounds;              ///< where the options ask for them
   std::vector<std::pair<std::string, double>> ns_per_step;  ///< by tracker; timings, the only figures that vary
+  std::vector<PublishedRow> published;                      ///< of others, of the same
   std::vector<ComparisonOfSet> sets;                        ///< where there were several: each by itself
 
   const TrackerSummary* tracker(const std::string& name) const;

@@ -15,7 +15,7 @@ namespace truebearing {
 using ReadFamily = std::shared_ptr<const MetricFamily>(TableReader& scoring, const StateSpace& truth,
                                                        ScoringRule& rule);
 // Each is defined in the family's own file.
-ReadFamily read_target_motion, read_tracks, read_gospa, read_peak_error;
+ReadFamily read_target_motion, read_tracks, read_gospa, read_peak_error, read_mse_db, read_mean_error;
 
 namespace {
 
@@ -34,7 +34,8 @@ constexpr Entry kFamilies[] = {
     {"", always<time_metrics>},      {"target_motion", read_target_motion},
     {"", always<batch_metrics>},     {"", always<event_metrics>},
     {"tracks", read_tracks},         {"gospa", read_gospa},
-    {"peak_error", read_peak_error},
+    {"peak_error", read_peak_error}, {"mse_db", read_mse_db},
+    {"mean_error", read_mean_error},
 };
 
 }  // namespace

@@ -114,6 +114,15 @@ Json angle_bound_json(const Comparison& comparison, const AngleBoundSummary& bou
   return entry;
 }
 
+Json published_json(const std::vector<PublishedRow>& rows) {
+  Json json = Json::object();
+  for (const PublishedRow& row : rows) {
+    json[row.name]["source"] = row.source;
+    for (const PublishedFigure& figure : row.figures) json[row.name][figure.name] = figure.value;
+  }
+  return json;
+}
+
 using Columns = std::vector<QuantitySummary>;
 
 // The quantities of the tracker that has most of them: a raw measurement may lack the velocity.
@@ -169,6 +178,24 @@ std::vector<std::string> table_row(const Comparison& comparison, const TrackerSu
   return row;
 }
 
+// What of that table was published; no row where that is nothing.
+void add_published(const Comparison& comparison, std::vector<std::vector<std::string>>& rows) {
+  const auto cell = [](std::optional<double> value) { return value ? figure(*value) : "-"; };
+  for (const PublishedRow& published : comparison.published) {
+    bool has_any = published.figure("nees").has_value();
+    std::vector<std::string> row{published_title(published)};
+    for (const QuantitySummary& column : quantities_of(comparison)) {
+      const std::optional<double> rmse = published.figure(column.name);
+      has_any |= rmse.has_value();
+      row.insert(row.end(), {cell(rmse), "-"});
+      if (comparison.tracker(kPlain)) row.emplace_back("-");
+      if (way_to_bound(comparison)) row.emplace_back("-");
+    }
+    row.push_back(cell(published.figure("nees")));
+    if (has_any) rows.push_back(std::move(row));
+  }
+}
+
 // RMSE by phase, where the scenario tells phases apart.
 std::string phase_table(const Comparison& comparison) {
   if (comparison.phases.empty()) return {};
@@ -190,8 +217,21 @@ std::string phase_table(const Comparison& comparison) {
 std::string tables(const Comparison& comparison) {
   std::vector<std::vector<std::string>> rows{heading(comparison)};
   for (const TrackerSummary& summary : comparison.trackers) rows.push_back(table_row(comparison, summary));
+  add_published(comparison, rows);
   return aligned(rows) + track_tables(comparison) + phase_table(comparison) + time_tables(comparison) +
          pair_table("paired, per-run RMSE", comparison, MetricTable::figures);
+}
+
+// Where what was published is printed, each source once.
+std::string sources(const Comparison& comparison) {
+  std::vector<PublishedRow> rows = comparison.published;
+  for (const auto& [name, set] : comparison.sets) rows.insert(rows.end(), set.published.begin(), set.published.end());
+  std::vector<std::string> lines;
+  for (const PublishedRow& row : rows)
+    if (std::string line = fmt::format("{}: {}\n", published_title(row), row.source);
+        std::find(lines.begin(), lines.end(), line) == lines.end())
+      lines.push_back(std::move(line));
+  return lines.empty() ? "" : fmt::format("\n{}", fmt::join(lines, ""));
 }
 
 // What a comparison, or one set of it, has to say besides where it comes from.
@@ -215,6 +255,7 @@ void add_figures(const Comparison& comparison, Json& json) {
   }
   for (const AngleBoundSummary& bound : comparison.angle_bounds)
     json["bounds"][bound.name] = angle_bound_json(comparison, bound);
+  if (!comparison.published.empty()) json["published"] = published_json(comparison.published);
   json["paired"] = Json::object();
   for (const Comparison::Pair& pair : comparison.pairs) {
     Json& entry = json["paired"][pair.a + " - " + pair.b] = Json::object();
@@ -234,9 +275,9 @@ void add_figures(const Comparison& comparison, Json& json) {
 std::string comparison_table(const Comparison& comparison) {
   std::string text = fmt::format("{}: {} runs, seed {}\n\n", comparison.study, comparison.runs, comparison.seed);
   if (comparison.trackers.empty()) return text;
-  if (comparison.sets.empty()) return text + tables(comparison);
   for (const auto& [name, set] : comparison.sets) text += name + "\n" + tables(set) + "\n";
-  return text + "all sets together\n" + tables(comparison);
+  if (!comparison.sets.empty()) text += "all sets together\n";
+  return text + tables(comparison) + sources(comparison);
 }
 
 std::string comparison_json(const Comparison& comparison, const std::vector<RunPicture>& pictures) {

@@ -2,7 +2,9 @@
 #include "truebearing/evaluation/time_table.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
+#include <utility>
 #include <vector>
 
 #include "truebearing/evaluation/text_table.hpp"
@@ -42,6 +44,7 @@ std::string value_at(const std::vector<Metric>& metrics, const std::string& name
 std::string title(const Metric& kind) {
   std::string words = kind.name;
   std::replace(words.begin(), words.end(), '_', ' ');
+  if (kind.unit == "dB" && words.ends_with(" db")) words.resize(words.size() - 3);  // it says its unit itself
   return kind.unit == "1" || kind.unit == "share" ? words : words + " " + kind.unit;
 }
 
@@ -76,6 +79,47 @@ void add_pairs(const Comparison& comparison, Rows& rows) {
   }
 }
 
+const Metric* find_timeless(const TrackerSummary& summary, const std::string& name) {
+  for (const Metric& metric : summary.metrics)
+    if (metric.name == name && !metric.time_s) return &metric;
+  return nullptr;
+}
+
+// Figures at no time, with the standard errors of those that have one, and what was published of them.
+Rows timeless_rows(const Comparison& comparison, const std::vector<Metric>& kinds) {
+  if (kinds.empty()) return {};
+  Rows rows{{"tracker"}};
+  std::vector<bool> has_se;
+  for (const Metric& kind : kinds) {
+    has_se.push_back(std::any_of(comparison.trackers.begin(), comparison.trackers.end(), [&](const auto& summary) {
+      const Metric* metric = find_timeless(summary, kind.name);
+      return metric && std::isfinite(metric->se);
+    }));
+    rows[0].push_back(title(kind));
+    if (has_se.back()) rows[0].emplace_back("+-");
+  }
+  for (const TrackerSummary& summary : comparison.trackers) {
+    rows.push_back({summary.name});
+    for (std::size_t i = 0; i < kinds.size(); ++i) {
+      const Metric* metric = find_timeless(summary, kinds[i].name);
+      rows.back().push_back(metric ? figure(metric->value) : "-");
+      if (has_se[i]) rows.back().push_back(metric ? figure(metric->se) : "-");
+    }
+  }
+  for (const PublishedRow& published : comparison.published) {
+    bool has_any = false;
+    std::vector<std::string> row{published_title(published)};
+    for (std::size_t i = 0; i < kinds.size(); ++i) {
+      const std::optional<double> value = published.figure(kinds[i].name);
+      has_any |= value.has_value();
+      row.push_back(value ? figure(*value) : "-");
+      if (has_se[i]) row.emplace_back("-");
+    }
+    if (has_any) rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
 }  // namespace
 
 std::string time_tables(const Comparison& comparison) {
@@ -94,15 +138,8 @@ std::string time_tables(const Comparison& comparison) {
   add_pairs(comparison, rows);
   if (rows.size() > 1) text.append("\n").append(aligned(rows));
 
-  const std::vector<Metric> timeless = kinds(comparison, [&](const Metric& m) { return !m.time_s && has_place(m); });
-  if (timeless.empty()) return text;
-  rows.assign(1, {"tracker"});
-  for (const Metric& kind : timeless) rows.back().push_back(title(kind));
-  for (const TrackerSummary& summary : comparison.trackers) {
-    rows.push_back({summary.name});
-    for (const Metric& kind : timeless) rows.back().push_back(value_at(summary.metrics, kind.name, std::nullopt));
-  }
-  return text.append("\n").append(aligned(rows));
+  rows = timeless_rows(comparison, kinds(comparison, [&](const Metric& m) { return !m.time_s && has_place(m); }));
+  return rows.empty() ? text : text.append("\n").append(aligned(rows));
 }
 
 }  // namespace truebearing

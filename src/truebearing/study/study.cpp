@@ -6,6 +6,7 @@
 
 #include "truebearing/io/file.hpp"
 #include "truebearing/study/configuration_text.hpp"
+#include "truebearing/study/published_rows.hpp"
 #include "truebearing/tracker/step_log_scenario.hpp"
 
 namespace truebearing {
@@ -71,6 +72,9 @@ void Study::read(const StudyFile& file) {
     for (const auto& [set, set_scenario] : sets_) compared.push_back({"the set \"" + set + "\"", set_scenario.get()});
     scoring_ = read_study_scoring(std::move(*scoring), names_of(trackers_), scenario_->truth_space(), compared);
   }
+  std::vector<std::string> set_names;
+  for (const auto& [set, set_scenario] : sets_) set_names.push_back(set);
+  published_ = read_published(reader, scoring_.rule, scenario_->truth_space(), set_names);
   reader.finish();
   files_ = {path_, scenario_file_};
   add_texts(*file.table, path_.parent_path(), files_);
@@ -136,6 +140,7 @@ ComparisonOptions Study::comparison_options(bool on_records) const {
   for (const std::string& bound : scoring_.bounds)
     if (!on_records || std::find(limits_.begin(), limits_.end(), bound) == limits_.end())
       options.bounds.push_back(bound);
+  if (!on_records) options.published = published_;
   options.cramer_rao = scoring_.timed.cramer_rao;
   options.angle_bound = scoring_.angle_bound;
   options.global_minimum = scoring_.timed.global_minimum;

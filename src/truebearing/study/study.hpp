@@ -81,7 +81,7 @@ class Study {
   void check_model(const std::string& name, const CorrectionModel& model, const std::string& where) const;
 
   /// Options of a comparison as the study has them. On records the limits of the scenario's family are trackers as any
-  /// other.
+  /// other, and nothing is published.
   ComparisonOptions comparison_options(bool on_records = false) const;
 
   /// What whoever reads the results should know of its trackers, line by line; mostly nothing.
@@ -107,6 +107,7 @@ class Study {
   std::size_t runs_ = 1000;
   std::size_t tuning_runs_ = 300;
   StudyScoring scoring_;
+  std::vector<PublishedRow> published_;
   std::vector<std::string> limits_;  // trackers that know the scenario's family; bounds but on records
   std::filesystem::path parameters_path_;
   std::optional<ParametersFile> parameters_;

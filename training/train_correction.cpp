@@ -115,7 +115,7 @@ IntervalBox interval_box(const Eigen::MatrixXd& intervals, const BoxSpec& spec) 
   IntervalBox box;
   if (known(0).empty()) return box;  // no track has used two measurements
   box.low_s = quantile_of(known(0), spec.quantile);
-  box.high_s = std::min(quantile_of(known(1), 1.0 - spec.quantile), spec.longest_interval_s);
+  box.high_s = quantile_of(known(1), 1.0 - spec.quantile);
   box.longest_coast_s = quantile_of(known(2), 1.0 - spec.quantile);
   return box;
 }

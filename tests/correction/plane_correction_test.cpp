@@ -82,8 +82,9 @@ CorrectionModel one_second_model() {
   return model;
 }
 
-double last_gate(std::vector<Measurement> log, double stretch) {
-  CorrectedTracker tracker = corrected(one_second_model(), {});
+double last_gate(std::vector<Measurement> log, double stretch, const CorrectionModel& model = one_second_model(),
+                 const CorrectionBounds& bounds = {}) {
+  CorrectedTracker tracker = corrected(model, bounds);
   double gate = -1.0;
   for (Measurement& measurement : log) {
     measurement.time_s *= stretch;
@@ -98,6 +99,20 @@ TEST(PlaneCorrection, GateClosesAtPeriodsThatWereNotTaught) {
   EXPECT_EQ(last_gate(log, 1.0), 1.0);
   EXPECT_GT(last_gate(log, 1.05), 0.8);
   for (const double stretch : {0.5, 2.0, 3.0}) EXPECT_LT(last_gate(log, stretch), 1e-6) << stretch;
+}
+
+TEST(PlaneCorrection, GateClosesAtIntervalsLongerThanTheStudyPromises) {
+  CorrectionModel model = one_second_model();
+  model.gate->intervals.high_s = 10.0;
+  const std::vector<Measurement> log = plane_log(4, 30);
+  EXPECT_EQ(last_gate(log, 5.0, model), 1.0);
+  for (const auto& intervals : {model.gate->intervals, IntervalBox{}}) {  // what was taught may not be known
+    model.gate->intervals = intervals;
+    EXPECT_EQ(last_gate(log, 2.0, model, {.longest_interval_s = 2.5}), 1.0);
+    EXPECT_LT(last_gate(log, 5.0, model, {.longest_interval_s = 2.5}), 1e-6);
+  }
+  EXPECT_EQ(last_gate(log, 5.0, model, {.gate = false, .longest_interval_s = 2.5}), 1.0);
+  EXPECT_THROW(corrected(model, {.longest_interval_s = 0.0}), InputError);
 }
 
 TEST(PlaneCorrection, GateClosesWhileTheBaseCoastsAndForAWhileAfter) {

@@ -364,6 +364,8 @@ TEST(Study, BoundsOfACorrectionAreThreeSigmasAndAGateWhereItSaysNothing) {
   EXPECT_TRUE(std::isinf(bounds("kappa = inf").kappa));
   EXPECT_FALSE(bounds("gate = false").gate);
   EXPECT_TRUE(bounds("gate = { quantile = 0.01 }").gate);
+  EXPECT_TRUE(std::isinf(bounds("gate = { quantile = 0.01 }").longest_interval_s));
+  EXPECT_EQ(bounds("gate = { longest_interval_s = 60 }").longest_interval_s, 60.0);
   EXPECT_EQ(bounds("referee = { edge = 0.5 }").referee->edge, 0.5);
 }
 

@@ -83,6 +83,10 @@ Correction::Correction(std::shared_ptr<const CorrectionModel> model, const Ensem
     throw InputError("correction", "has a referee, and \"" + model_->design.base + "\" measures no position",
                      "a base that measures positions, or no referee");
   if (!bounds_.fallback.empty()) fallback_ = member_index(ensemble, bounds_.fallback, *model_->space);
+  if (bounds_.gate && model_->gate) {
+    gate_ = model_->gate;
+    gate_->intervals.high_s = std::min(gate_->intervals.high_s, bounds_.longest_interval_s);
+  }
   reset();
 }
 
@@ -166,10 +170,8 @@ void Correction::correct_record(const CorrectionInputs::Records& step, Track& tr
   const SafeDistance distance(reference.P);
   const Limited limited = limit_kappa(distance, wanted, bounds_.kappa);
   const BoundedVector& d = limited.d;
-  const bool gated = bounds_.gate && model_->gate;
   const double g =
-      gated ? model_->gate->weight(features_, track.extractor.intervals(), disagreement(wanted, P_c, reference.P))
-            : 1.0;
+      gate_ ? gate_->weight(features_, track.extractor.intervals(), disagreement(wanted, P_c, reference.P)) : 1.0;
   const Referee::Weights w = bounds_.referee ? track.referee.weights(*bounds_.referee) : Referee::Weights{};
   const BoundedVector G = component_weights(g, w, reference.x.size());
 

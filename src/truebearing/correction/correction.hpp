@@ -11,6 +11,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "truebearing/correction/correction_bounds.hpp"
@@ -51,6 +52,7 @@ class Correction {
 
   std::shared_ptr<const CorrectionModel> model_;
   CorrectionBounds bounds_;
+  std::optional<BoxGate> gate_;  // the model's, within those bounds
   CorrectionInputs inputs_;
   int fallback_ = -1;  // its index in the ensemble; -1 where there is none
   std::vector<Track> tracks_;

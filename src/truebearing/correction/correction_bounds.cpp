@@ -13,6 +13,7 @@ void CorrectionBounds::validate() const {
     if (!valid) throw InputError(where, fmt::format("is {}", found), wanted);
   };
   require(kappa > 0.0, "kappa", kappa, "a number > 0, or infinity for none");
+  require(longest_interval_s > 0.0, "longest_interval_s", longest_interval_s, "a number > 0, or infinity for none");
   if (!referee && !fallback.empty())
     throw InputError("fallback", "is \"" + fallback + "\", and no referee says when it is better", "a referee");
   if (!referee) return;
@@ -23,7 +24,9 @@ void CorrectionBounds::validate() const {
 }
 
 std::string describe(const CorrectionBounds& bounds) {
-  std::string text = fmt::format("kappa {}, {}gate, ", bounds.kappa, bounds.gate ? "" : "no ");
+  std::string text = fmt::format("kappa {}, {}gate", bounds.kappa, bounds.gate ? "" : "no ");
+  if (std::isfinite(bounds.longest_interval_s)) text += fmt::format(" up to {} s", bounds.longest_interval_s);
+  text += ", ";
   if (!bounds.referee) return text + "no referee";
   const auto& [alpha, tolerance, edge] = *bounds.referee;
   text += fmt::format("referee of alpha {}, tolerance {}, edge {}", alpha, tolerance, edge);

@@ -3,6 +3,7 @@
 // in the study, and changing it asks for no new model.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -16,6 +17,8 @@ struct CorrectionBounds {
   std::optional<RefereeOptions> referee = {};  ///< absent: none
   /// A tracker that is trusted in the reference's place where the referee finds it the better one; empty: none.
   std::string fallback = {};
+  /// > 0: at longer intervals between used measurements the gate closes, whatever was taught.
+  double longest_interval_s = std::numeric_limits<double>::infinity();
 
   bool operator==(const CorrectionBounds&) const = default;
 

@@ -103,8 +103,8 @@ TrainingSpec read_training(TableReader& table, NetworkKind network) {
   return training;
 }
 
-// gate = true, false, or { quantile, edge_fraction, disagreement_quantile, disagreement_edge_fraction,
-// longest_interval_s }.
+// gate = true, false, or { quantile, edge_fraction, disagreement_quantile, disagreement_edge_fraction }, by which its box
+// is fitted, and { longest_interval_s }, which asks for no new training.
 void read_gate(TableReader& table, CorrectionSpec& spec) {
   const toml::node* node = table.node("gate");
   if (!node || node->is_boolean()) {
@@ -118,7 +118,7 @@ void read_gate(TableReader& table, CorrectionSpec& spec) {
   box.disagreement_quantile = sub.number_or("disagreement_quantile", box.disagreement_quantile, {0.0, 0.5});
   box.disagreement_edge_fraction =
       sub.number_or("disagreement_edge_fraction", box.disagreement_edge_fraction, {0.0, 10.0, true});
-  if (sub.has("longest_interval_s")) box.longest_interval_s = sub.number("longest_interval_s", kPositive);
+  if (sub.has("longest_interval_s")) spec.bounds.longest_interval_s = sub.number("longest_interval_s", kPositive);
   sub.finish();
 }
 

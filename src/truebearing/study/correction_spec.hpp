@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -68,8 +67,6 @@ struct BoxSpec {
   double disagreement_quantile =
       0.005;  ///< and this share of the corrections, those that disagreed most with the reference
   double disagreement_edge_fraction = 0.05;
-  /// The study promises nothing at longer intervals between measurements, whatever was taught; > 0.
-  double longest_interval_s = std::numeric_limits<double>::infinity();
 };
 
 struct CorrectionSpec {

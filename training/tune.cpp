@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "training/tune.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -65,6 +66,8 @@ class TuningRuns {
     });
   }
 
+  const std::vector<Recording>& recordings() const { return recordings_; }
+
   TrackerSummary score(const Tracker& tracker) const {
     Ensemble ensemble;
     ensemble.add("tuned", tracker.fresh());
@@ -87,6 +90,30 @@ class TuningRuns {
   int threads_;
   std::vector<Recording> recordings_;
 };
+
+// H of z = H x, row by row, by least squares over every measurement and the truth beside it.
+std::vector<double> fitted_matrix(const std::vector<Recording>& recordings, const Study& study,
+                                  const TrackerSpec& spec) {
+  const Eigen::Index n = study.scenario().truth_space().size();
+  const auto numbers = static_cast<Eigen::Index>(numbers_at(*spec.configuration, kMeasurementMatrix, spec.name).size());
+  const Eigen::Index m = numbers / n;
+  Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(n, n), products = Eigen::MatrixXd::Zero(n, m);
+  for (const Recording& recording : recordings)
+    for (const Truth& truth : recording.truth)
+      for (std::size_t k = 0; k < truth.x.size(); ++k) {
+        const BoundedVector& z = recording.measurements[k].z;
+        if (z.size() != m || !z.allFinite() || !truth.x[k].allFinite()) continue;
+        squares += truth.x[k] * truth.x[k].transpose();
+        products += truth.x[k] * z.transpose();
+      }
+  const Eigen::LDLT<Eigen::MatrixXd> factors(squares);
+  if (numbers != n * m || m == 0 || factors.info() != Eigen::Success || !(factors.rcond() > 1e-12))
+    throw InputError(study.path().string() + ": trackers." + spec.name + ".tune",
+                     std::string("names ") + kMeasurementMatrix + ", which the tuning runs do not tell",
+                     "runs whose truth moves in every component of the state");
+  const Eigen::MatrixXd transposed = factors.solve(products);  // (n x m), by columns: the rows of H
+  return {transposed.data(), transposed.data() + transposed.size()};
+}
 
 double cost_of(const TrackerSummary& summary) {
   double cost = 0.0;
@@ -123,11 +150,20 @@ void fix_common_factor(std::vector<double>& logarithms, const TunedTracker& trac
 }  // namespace
 
 TunedValues tune_tracker(const Study& study, const std::string& name, const TuneOptions& options, TuneReport* report) {
-  const TrackerSpec& spec = study.tracker(name);
-  if (spec.tune.empty())
+  if (study.tracker(name).tune.empty())
     throw InputError(study.path().string() + ": trackers." + name, "has nothing to tune", "a key `tune`");
-  const TunedTracker tracker(study, spec);
   const TuningRuns runs(study, options);
+  TrackerSpec spec = study.tracker(name);
+  TunedValues fitted;
+  if (std::erase(spec.tune, kMeasurementMatrix) > 0) {
+    fitted[kMeasurementMatrix] = fitted_matrix(runs.recordings(), study, spec);
+    spec.configuration = with_numbers(*spec.configuration, kMeasurementMatrix, fitted[kMeasurementMatrix]);
+    if (spec.tune.empty()) {
+      if (report) *report = {};
+      return fitted;
+    }
+  }
+  const TunedTracker tracker(study, spec);
 
   const auto cost_at = [&](const std::vector<double>& logarithms) {
     const std::optional<TrackerSummary> summary = score_of(logarithms, tracker, runs);
@@ -167,7 +203,9 @@ TunedValues tune_tracker(const Study& study, const std::string& name, const Tune
   }
   if (logarithms.size() > 1) fix_common_factor(logarithms, tracker, runs);
   if (report) *report = {evaluations, before, after};
-  return tracker.values(logarithms);
+  TunedValues values = tracker.values(logarithms);
+  values.merge(fitted);
+  return values;
 }
 
 }  // namespace truebearing

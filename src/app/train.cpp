@@ -12,6 +12,7 @@
 #include "app/output.hpp"
 #include "app/subcommands.hpp"
 #include "app/workflow.hpp"
+#include "truebearing/correction/learned_motion_file.hpp"
 #include "truebearing/correction/model_file.hpp"
 
 namespace truebearing {
@@ -26,15 +27,30 @@ struct TrainArguments {
   bool quiet = false;
 };
 
+void train_one_motion(const Study& study, const std::string& name, const TrainArguments& options) {
+  const std::filesystem::path own = study.tracker(name).learned->file;
+  const std::string output = options.output.empty() ? own.string() : options.output;
+  check_products(study, {output}, {own});
+  const MotionResidual residual =
+      train_motion(study, name, {options.seed.value_or(study.seed()), options.threads, options.quiet});
+  write_output(output, learned_motion_text(residual));
+  if (!is_standard_output(output)) fmt::print("written: {}\n", output);
+}
+
 void train(const TrainArguments& options) {
   Study study = Study::load(options.study);
   for (const std::string& name : options.trackers)
-    if (!study.tracker(name).correction)
-      throw InputError(options.study, "\"" + name + "\" is not a corrected tracker", "trackers of kind \"corrected\"");
-  const std::vector<std::string> names = corrected_trackers(study, options.trackers);
-  if (names.empty()) throw InputError(options.study, "has no tracker of kind \"corrected\"");
-  if (!options.output.empty() && names.size() > 1)
-    throw InputError("-o", fmt::format("names one file for {} models", names.size()), "--tracker NAME beside it");
+    if (!study.tracker(name).correction && !study.tracker(name).learned)
+      throw InputError(options.study, "\"" + name + "\" is not a corrected tracker",
+                       "trackers of kind \"corrected\", or with a learned motion");
+  const std::vector<std::string> learned = learned_trackers(study, options.trackers),
+                                 names = corrected_trackers(study, options.trackers);
+  if (names.empty() && learned.empty()) throw InputError(options.study, "has no tracker of kind \"corrected\"");
+  if (!options.output.empty() && names.size() + learned.size() > 1)
+    throw InputError("-o", fmt::format("names one file for {} models", names.size() + learned.size()),
+                     "--tracker NAME beside it");
+  for (const std::string& name : learned) train_one_motion(study, name, options);
+  if (names.empty()) return;
   std::vector<std::string> outputs;
   std::vector<std::filesystem::path> own;
   for (const std::string& name : names) {

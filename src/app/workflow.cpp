@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "app/output.hpp"
+#include "training/learned_motion_training.hpp"
 #include "training/train_correction.hpp"
 #include "training/tune.hpp"
 
@@ -95,6 +96,35 @@ ParametersFile tune_study(const Study& study, const WorkflowOptions& options) {
                       report.evaluations));
   }
   return parameters;
+}
+
+std::vector<std::string> learned_trackers(const Study& study, const std::vector<std::string>& names) {
+  std::vector<std::string> learned;
+  for (const TrackerSpec& spec : study.trackers())
+    if (spec.learned && (names.empty() || std::find(names.begin(), names.end(), spec.name) != names.end()))
+      learned.push_back(spec.name);
+  return learned;
+}
+
+MotionResidual train_motion(const Study& study, const std::string& name, const WorkflowOptions& options) {
+  LearnedMotionReport report;
+  MotionResidual residual;
+  {
+    ProgressLine teacher("teach " + name, options.quiet);
+    ProgressLine training("train " + name, options.quiet);
+    residual = train_learned_motion(study, name,
+                                    {options.seed, options.threads, teacher.callback(),
+                                     [&](int done, int total, double) {
+                                       training.show(static_cast<std::size_t>(done), static_cast<std::size_t>(total));
+                                     }},
+                                    &report);
+  }
+  if (!options.quiet)
+    say(fmt::format(
+        "taught the motion of {}: {} rules on {} steps in {:.2f} s; what a prediction misses is {:.3g} times "
+        "what it was",
+        name, residual.network.rules(), report.rows, report.training_seconds, report.remaining));
+  return residual;
 }
 
 CorrectionModels train_study(const Study& study, const std::vector<std::string>& names,

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "truebearing/correction/learned_motion.hpp"
 #include "truebearing/study/study.hpp"
 
 namespace truebearing {
@@ -29,6 +30,11 @@ void check_products(const Study& study, const std::vector<std::string>& outputs,
 
 /// Fits every tracker of the study that has something to tune. Says on standard error what it found, unless quiet.
 ParametersFile tune_study(const Study& study, const WorkflowOptions& options);
+
+/// The trackers of those names whose motion is learned; all of them where there are none.
+std::vector<std::string> learned_trackers(const Study& study, const std::vector<std::string>& names);
+/// Teaches the motion of that tracker.
+MotionResidual train_motion(const Study& study, const std::string& name, const WorkflowOptions& options);
 
 /// Trains the corrected trackers of those names; all of them where there are none. Scores each on validation runs,
 /// which the model file remembers.

@@ -68,6 +68,39 @@ TEST(FuzzyNetwork, IsTheWeightedSumOfThePaper) {
   }
 }
 
+TEST(FuzzyNetwork, JacobianIsThatOfCentralDifferences) {
+  const FuzzyNetwork network(random_parameters(21));
+  RandomStream random = test_stream(22);
+  constexpr double kStep = 1e-5;
+  for (int n = 0; n < 50; ++n) {
+    const FuzzyNetwork::Inputs input = random_input(random, 1.0);
+    FuzzyNetwork::Strengths phi;
+    network.strengths(input, phi);
+    const FuzzyNetwork::Jacobian slope = network.jacobian(input, phi);
+    ASSERT_EQ(slope.rows(), kOutputs);
+    ASSERT_EQ(slope.cols(), kInputs);
+    for (int i = 0; i < kInputs; ++i) {
+      FuzzyNetwork::Inputs above = input, below = input;
+      above[i] += kStep;
+      below[i] -= kStep;
+      const Eigen::VectorXd expected = (evaluate(network, above) - evaluate(network, below)) / (2.0 * kStep);
+      EXPECT_LT((slope.col(i) - expected).norm(), 1e-6 * (1.0 + expected.norm()));
+    }
+  }
+}
+
+TEST(FuzzyNetwork, HasNoSlopeWhereAnInputIsClipped) {
+  const FuzzyNetwork::Parameters p = random_parameters(23);
+  const FuzzyNetwork network(p);
+  FuzzyNetwork::Inputs input = p.input_mean;
+  input[1] += 5.0 * p.input_scale[1];
+  FuzzyNetwork::Strengths phi;
+  network.strengths(input, phi);
+  const FuzzyNetwork::Jacobian slope = network.jacobian(input, phi);
+  EXPECT_EQ(slope.col(1).norm(), 0.0);
+  EXPECT_GT(slope.col(0).norm(), 0.0);
+}
+
 TEST(FuzzyNetwork, StrengthsAreNotNegativeAndSumToOne) {
   const FuzzyNetwork network(random_parameters(3));
   RandomStream random = test_stream(4);

@@ -7,6 +7,7 @@
 #include "tests/support/error_message.hpp"
 #include "tests/support/radar_study.hpp"
 #include "tests/support/statistics.hpp"
+#include "truebearing/simulation/lorenz_scenario.hpp"
 
 namespace truebearing::tune_test {
 namespace {
@@ -115,6 +116,43 @@ TEST(Tune, CommonFactorIsSetByTheNees) {
     const Comparison comparison = compare(tuned.make_tracker_set(), tuned.evaluation_scenarios(), options);
     EXPECT_NEAR(comparison.trackers[0].nees, 2.0, 1e-6) << start;
   }
+}
+
+// A sensor that is turned: H from pairs of truth and measurement, beside the number that is tuned after it.
+TEST(Tune, FitsTheMatrixOfASensor) {
+  const std::string text = R"(name = "turned"
+[scenario]
+kind = "lorenz"
+period_s = 0.02
+steps = 100
+truth = { model = "lorenz_rk4", step_s = 0.02 }
+start = { x = 1.0, y = 1.0, z = 1.0 }
+sensor = { sigma = 0.1, rotation_deg = [2.0, -3.0, 5.0] }
+[tuning]
+runs = 20
+[trackers.filter]
+kind = "kalman"
+motion = { model = "lorenz_rk4", step_s = 0.02, sigma = 0.01 }
+measurement = { model = "lorenz", sigma = 0.3, matrix = [1, 0, 0, 0, 1, 0, 0, 0, 1] }
+start = { kind = "prior", x = [1, 1, 1], variance = [1, 1, 1] }
+tune = ["measurement.matrix", "measurement.sigma"]
+)";
+  const TemporaryFolder folder;
+  const Study study = Study::load(folder.write("turned.toml", text));
+  const TunedValues values = tune(study, "filter", 0, nullptr, 40);
+  const Eigen::Matrix3d expected = rotation_of({2.0, -3.0, 5.0});
+  const std::vector<double>& found = values.at("measurement.matrix");
+  ASSERT_EQ(found.size(), 9u);
+  // 2000 measurements of .1 over states that spread by some eight: 3e-4 of standard deviation.
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) EXPECT_NEAR(found[static_cast<std::size_t>(3 * i + j)], expected(i, j), 2e-3);
+  EXPECT_EQ(values.count("measurement.sigma"), 1u);
+  const Study alone = Study::load(folder.write("alone.toml", replaced(text, ", \"measurement.sigma\"]", "]")));
+  EXPECT_EQ(tune(alone, "filter", 0).at("measurement.matrix"), found);
+  // One measurement of one state tells no matrix.
+  const Study still = Study::load(
+      folder.write("still.toml", replaced(replaced(text, "steps = 100", "steps = 1"), "runs = 20", "runs = 1")));
+  EXPECT_THAT(error_message([&] { tune(still, "filter", 0); }), HasSubstr("measurement.matrix"));
 }
 
 TEST(Tune, IsTheSameForAnyNumberOfThreads) {

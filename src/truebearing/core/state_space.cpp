@@ -47,19 +47,26 @@ const StateSpace& angle_space() {
   return space;
 }
 
+const StateSpace& lorenz_space() {
+  static const StateSpace space{"lorenz", {"lorenz_x", "lorenz_y", "lorenz_z"}, {{"state", {0, 1, 2}}}};
+  return space;
+}
+
 bool begins_in_plane(const StateSpace& space) {
   const std::vector<std::string>& plane = plane_space().components;
   return space.components.size() >= plane.size() && std::equal(plane.begin(), plane.end(), space.components.begin());
 }
 
 const StateSpace* find_state_space(std::string_view name) {
-  for (const StateSpace* space : {&line_space(), &plane_space(), &plane_frequency_space(), &angle_space()})
+  for (const StateSpace* space :
+       {&line_space(), &plane_space(), &plane_frequency_space(), &angle_space(), &lorenz_space()})
     if (space->name == name) return space;
   return nullptr;
 }
 
 const StateSpace& state_space_of_components(const std::vector<std::string>& components) {
-  for (const StateSpace* space : {&line_space(), &plane_space(), &plane_frequency_space(), &angle_space()})
+  for (const StateSpace* space :
+       {&line_space(), &plane_space(), &plane_frequency_space(), &angle_space(), &lorenz_space()})
     if (space->components == components) return *space;
   if (components.empty() || components.size() > kMaxDimension)
     throw InputError("state", "has " + std::to_string(components.size()) + " components",

@@ -36,6 +36,8 @@ const StateSpace& plane_space();
 const StateSpace& plane_frequency_space();
 /// [angle_rad, rate_radps]: the direction to a target, and its rate; reported in degrees.
 const StateSpace& angle_space();
+/// [lorenz_x, lorenz_y, lorenz_z]: the Lorenz attractor, without units; reported as one quantity, "state".
+const StateSpace& lorenz_space();
 /// True where a state begins with the components of plane_space().
 bool begins_in_plane(const StateSpace& space);
 

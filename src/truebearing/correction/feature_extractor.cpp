@@ -24,7 +24,8 @@ void check(const FeatureSpec& feature, const StateSpace& space, const StateSpace
     throw InputError(where, fmt::format("component \"{}\" is not in the state", feature.component),
                      suggestion(feature.component, components.components));
   const bool measured = needs.component == FeatureNeeds::Component::optional || feature.kind == FeatureKind::residual;
-  if (measured && component >= components.size() / 2 && component > 0)
+  const int positions = space == lorenz_space() ? space.size() : components.size() / 2;
+  if (measured && component >= positions && component > 0)
     throw InputError(where, fmt::format("component \"{}\" is not measured", feature.component), "a position");
   if (needs.velocity && component < components.size() / 2)
     throw InputError(where, fmt::format("component \"{}\" is no velocity", feature.component),

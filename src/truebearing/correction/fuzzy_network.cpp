@@ -105,4 +105,25 @@ FuzzyNetwork::Outputs FuzzyNetwork::output(const Strengths& phi) const {
   return scaled_consequents_.lazyProduct(phi);
 }
 
+FuzzyNetwork::Jacobian FuzzyNetwork::jacobian(const Inputs& input, const Strengths& phi) const {
+  const Outputs y = output(phi);
+  Jacobian slope = Jacobian::Zero(outputs(), inputs());
+  for (Eigen::Index i = 0; i < slope.cols(); ++i) {
+    const double u = (input[i] - parameters_.input_mean[i]) / parameters_.input_scale[i];
+    if (!(std::abs(u) < parameters_.input_clip)) continue;
+    // sum phi_j a_j w_j - y sum phi_j a_j.
+    double* const column = slope.data() + i * slope.rows();
+    double total = 0.0;
+    for (Eigen::Index j = 0; j < phi.size(); ++j) {
+      const double s = parameters_.widths(j, i);
+      const double weight = phi[j] * (parameters_.centres(j, i) - u) / (s * s);
+      total += weight;
+      const double* const w = scaled_consequents_.data() + j * slope.rows();
+      for (Eigen::Index k = 0; k < slope.rows(); ++k) column[k] += weight * w[k];
+    }
+    for (Eigen::Index k = 0; k < slope.rows(); ++k) column[k] = (column[k] - total * y[k]) / parameters_.input_scale[i];
+  }
+  return slope;
+}
+
 }  // namespace truebearing

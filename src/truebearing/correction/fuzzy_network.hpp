@@ -54,6 +54,12 @@ class FuzzyNetwork {
   /// y (p) for given strengths. No allocation.
   Outputs output(const Strengths& phi) const;
 
+  using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxOutputs, kMaxInputs>;
+  /// dy/dinput (p x d) at `input`, whose strengths are phi: with a_ji = (c_ji - u_i) / s_ji^2
+  ///     dy/du_i = sum_j phi_j a_ji (w_j - y),
+  /// and zero in an input that is clipped. No allocation.
+  Jacobian jacobian(const Inputs& input, const Strengths& phi) const;
+
  private:
   // Rules are evaluated kLanes at a time; those that fill up the last block never fire.
   using Blocks = Eigen::Array<double, kLanes, Eigen::Dynamic>;

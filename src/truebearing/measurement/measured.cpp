@@ -28,6 +28,10 @@ Measured Measured::bearing_frequency() {
   return {"bearing_frequency", {"bearing_deg", "frequency_hz"}};
 }
 
+Measured Measured::lorenz() {
+  return {"lorenz", lorenz_space().components};
+}
+
 Measured Measured::snapshots(int sensors) {
   return {"snapshots", {"snapshots"}, sensors};
 }
@@ -37,7 +41,8 @@ Measured Measured::step_log(const StateSpace& space) {
 }
 
 Measured Measured::of(std::vector<std::string> components) {
-  for (Measured known : {position(1), position(2), range_bearing(), bearing(), bearing_frequency(), snapshots()})
+  for (Measured known :
+       {position(1), position(2), range_bearing(), bearing(), bearing_frequency(), lorenz(), snapshots()})
     if (known.components == components) return known;
   return {kValues, std::move(components)};
 }

@@ -25,6 +25,8 @@ struct Measured {
   static Measured range_bearing();
   static Measured bearing();
   static Measured bearing_frequency();
+  /// The three components of the Lorenz attractor.
+  static Measured lorenz();
   /// The blocks of a line array, which have no z.
   static Measured snapshots(int sensors = 0);
   /// What a tracker that ran elsewhere made of its measurements: states of that space.

@@ -100,6 +100,7 @@ class LayoutReader {
     const bool is_truth = header.starts_with(kTruthPrefix);
     NameAndUnit name = apart(std::string_view(header).substr(is_truth ? kTruthPrefix.size() : 0));
     if (!name.unit) {
+      if (name_without_unit(header, column)) return;
       if (is_truth) fault(column.index, "names no known unit", "a name that ends in " + all_suffixes());
       return;
     }
@@ -117,6 +118,20 @@ class LayoutReader {
       column.role = ColumnRole::sigma;
       column.quantity = sigma_name(name_here(name));
     }
+  }
+
+  // The components of the Lorenz attractor, which have no unit.
+  static bool name_without_unit(const std::string& header, LogColumn& column) {
+    for (const std::string& component : lorenz_space().components) {
+      if (header == component) column.role = ColumnRole::measured;
+      if (header == kTruthPrefix.data() + component) column.role = ColumnRole::truth;
+      if (header == sigma_name(component)) column.role = ColumnRole::sigma;
+      if (column.role == ColumnRole::left_out) continue;
+      column.factor = 1.0;
+      column.quantity = column.role == ColumnRole::sigma ? header : component;
+      return true;
+    }
+    return false;
   }
 
   std::vector<std::size_t> columns_of(ColumnRole role) const {
@@ -220,7 +235,7 @@ class LayoutReader {
     }
     // The smallest that has them all; a frequency alone says nothing of the plane.
     const std::vector<std::string> kFrequencyAlone{"frequency_hz"};
-    for (const StateSpace* space : {&line_space(), &plane_space(), &plane_frequency_space()}) {
+    for (const StateSpace* space : {&line_space(), &plane_space(), &plane_frequency_space(), &lorenz_space()}) {
       const auto known = [&](const std::string& component) { return space->component_index(component) >= 0; };
       if (!layout_.truth_space && given != kFrequencyAlone && std::all_of(given.begin(), given.end(), known))
         layout_.truth_space = space;

@@ -37,6 +37,10 @@ std::vector<double> file_factors(const std::vector<std::string>& names) {
   std::vector<double> factors;
   for (const std::string& name : names) {
     const Unit* unit = apart(name).unit;
+    if (lorenz_space().component_index(name) >= 0) {
+      factors.push_back(1.0);
+      continue;
+    }
     if (!unit) throw InputError(name, "names no known unit", "a name that ends in " + all_suffixes());
     factors.push_back(unit->factor);
   }

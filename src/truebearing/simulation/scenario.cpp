@@ -9,6 +9,7 @@
 #include "truebearing/simulation/bearings_only_scenario.hpp"
 #include "truebearing/simulation/line_array_scenario.hpp"
 #include "truebearing/simulation/line_scenario.hpp"
+#include "truebearing/simulation/lorenz_scenario.hpp"
 #include "truebearing/simulation/planar_flight_scenario.hpp"
 #include "truebearing/simulation/planar_legs_scenario.hpp"
 
@@ -24,7 +25,8 @@ constexpr std::array kKinds{ScenarioKind{"line", read_line_scenario},
                             ScenarioKind{"planar_legs", read_planar_legs_scenario},
                             ScenarioKind{"bearings_only", read_bearings_only_scenario},
                             ScenarioKind{"passive_sonar", read_passive_sonar_scenario},
-                            ScenarioKind{"line_array", read_line_array_scenario}};
+                            ScenarioKind{"line_array", read_line_array_scenario},
+                            ScenarioKind{"lorenz", read_lorenz_scenario}};
 
 }  // namespace
 

@@ -20,6 +20,13 @@ double read_rest(TableReader& table, int states, int told) {
 
 }  // namespace
 
+MotionLayout read_layout(TableReader& tracker, const MeasurementChoice& measurement) {
+  MotionLayout layout{measurement.dimensions(), measurement.has_frequency};
+  layout.is_lorenz = measurement.is_lorenz();
+  if (layout.has_frequency) layout.frequency_q_hz2ps = tracker.number_or("frequency_q_hz2ps", 0.0, kNonNegative);
+  return layout;
+}
+
 PriorStart read_prior_start(TableReader& table, int states) {
   const std::vector<double> x = table.numbers("x", states);
   const std::vector<double> variance = table.numbers("variance", states, kPositive);
@@ -61,6 +68,9 @@ FilterTrackerOptions read_options(TableReader& tracker, const MeasurementChoice&
   options.output_pull = tracker.number_or("output_pull", 0.0, {0.0, 1.0});
   if (options.output_pull > 0.0 && !measurement.sensor->measures_position())
     throw tracker.error("output_pull", "needs measured positions", "0, or model = \"converted_range_bearing\"");
+  options.ahead_s = tracker.number_or("ahead_s", 0.0, {0.0, 1e6});
+  if (options.ahead_s > 0.0 && options.output_pull > 0.0)
+    throw tracker.error("ahead_s", "stands beside output_pull, which is of the present", "one of the two");
   return options;
 }
 

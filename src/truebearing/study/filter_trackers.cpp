@@ -20,12 +20,6 @@
 namespace truebearing {
 namespace {
 
-MotionLayout read_layout(TableReader& tracker, const MeasurementChoice& measurement) {
-  MotionLayout layout{measurement.dimensions(), measurement.has_frequency};
-  if (layout.has_frequency) layout.frequency_q_hz2ps = tracker.number_or("frequency_q_hz2ps", 0.0, kNonNegative);
-  return layout;
-}
-
 // What the filters ask of measurements beyond a Jacobian.
 void check_filter(const TableReader& tracker, const std::string& key, FilterKind filter,
                   const MeasurementChoice& measurement) {
@@ -112,6 +106,9 @@ std::unique_ptr<Tracker> make_kalman_bank(TableReader& table) {
   constexpr std::size_t kMost = 100000;
   const MeasurementChoice measurement = read_measurement(table);
   const FilterKind filter = read_filter(table, measurement, false, {"kalman", "unscented", "modified_gain"});
+  if (measurement.is_lorenz())
+    throw table.error("kind", "is \"kalman_bank\", which supposes velocities that \"lorenz\" has none of",
+                      "measurements of a target on the line or in the plane");
   const int d = measurement.dimensions();
   const std::vector<double> velocities = table.numbers("prior_velocities_mps");
   const std::vector<double> variance_factors = table.numbers("measurement_variance_factors", -1, kPositive);

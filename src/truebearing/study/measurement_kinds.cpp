@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "truebearing/core/angle.hpp"
+#include "truebearing/simulation/lorenz_scenario.hpp"
 #include "truebearing/tracker/bearing_sensor.hpp"
+#include "truebearing/tracker/lorenz_sensor.hpp"
 #include "truebearing/tracker/polar_sensor.hpp"
 #include "truebearing/tracker/position_sensor.hpp"
 #include "truebearing/tracker/range_bearing_rate_sensor.hpp"
@@ -86,6 +88,19 @@ std::unique_ptr<AnySensor> read_frequencies(const Reading& reading) {
   return sensor_of(read_bearing_frequency(reading));
 }
 
+std::unique_ptr<AnySensor> read_lorenz(const Reading& reading) {
+  TableReader& table = reading.table;
+  LorenzSensor sensor;
+  sensor.sigma.setConstant(table.number("sigma", kPositive));
+  sensor.sigma_factor = read_factor(reading);
+  if (table.has("matrix") && table.has("rotation_deg"))
+    throw table.error("", "has both of matrix and rotation_deg", "one of the two");
+  if (table.has("rotation_deg")) sensor.matrix = rotation_of(table.numbers("rotation_deg", 3));
+  if (table.has("matrix"))
+    sensor.matrix = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(table.numbers("matrix", 9).data());
+  return sensor_of(sensor);
+}
+
 struct MeasurementKind {
   const char* model;
   std::vector<std::string> spaces;  ///< the first is the default
@@ -101,6 +116,7 @@ const std::vector<MeasurementKind>& kinds() {
       {"range_bearing_rate", {"plane"}, read_range_bearing_rate},
       {"bearing", {"plane"}, read_bearing},
       {"bearing_frequency", {"plane_frequency", "plane"}, read_frequencies, true},
+      {"lorenz", {"lorenz"}, read_lorenz},
   };
   return the_kinds;
 }

@@ -19,12 +19,13 @@ struct MeasurementChoice {
   const StateSpace* space;            ///< of the records
   bool has_frequency = false;         ///< the state has the frequency of the source behind the velocities
 
-  int dimensions() const { return space->name == "line" ? 1 : 2; }  ///< d
+  bool is_lorenz() const { return *space == lorenz_space(); }
+  int dimensions() const { return *space == line_space() ? 1 : 2; }  ///< d, of positions
   /// Positions, velocities and what is measured with them: components that every state of these has.
   int leading() const { return 2 * dimensions() + (has_frequency ? 1 : 0); }
 };
 
-/// measurement = { model, ... }, space = "line" | "plane" | "plane_frequency". Standard deviations are multiplied by
+/// measurement = { model, ... }, space = "line" | "plane" | "plane_frequency" | "lorenz". Standard deviations are multiplied by
 /// `factor`, as hypotheses of a bank have it. Throws InputError.
 MeasurementChoice read_measurement(TableReader& tracker, double factor = 1.0);
 

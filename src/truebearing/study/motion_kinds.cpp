@@ -2,12 +2,16 @@
 #include "truebearing/study/motion_kinds.hpp"
 
 #include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
 #include <string>
+#include <toml++/toml.h>
 #include <variant>
 #include <vector>
 
 #include "truebearing/core/angle.hpp"
+#include "truebearing/core/with_count.hpp"
+#include "truebearing/correction/learned_motion_file.hpp"
 #include "truebearing/filter/erased_motion.hpp"
 #include "truebearing/motion/constant_acceleration.hpp"
 #include "truebearing/motion/constant_jerk.hpp"
@@ -16,6 +20,8 @@
 #include "truebearing/motion/singer.hpp"
 #include "truebearing/motion/turning_target.hpp"
 #include "truebearing/motion/with_frequency.hpp"
+#include "truebearing/simulation/lorenz_scenario.hpp"
+#include "truebearing/study/learned_motion_spec.hpp"
 
 namespace truebearing {
 namespace {
@@ -86,12 +92,43 @@ std::shared_ptr<const AnyMotion> turning_target(TableReader& motion, const Motio
   return laid_out(TurningTarget<AnyNoise<4>>{read_noise<2>(motion, factor), wander}, layout, "turn rate");
 }
 
+std::shared_ptr<const AnyMotion> lorenz_attractor(TableReader& motion, const MotionLayout& layout) {
+  const double sigma = motion.number("sigma", kNonNegative) * std::sqrt(layout.process_noise_factor);
+  return std::visit([](const auto& model) { return std::shared_ptr<const AnyMotion>(erased(model)); },
+                    read_lorenz_motion(motion, sigma));
+}
+
+// Its file is made for a motion of that many components by `truebearing train`.
+std::shared_ptr<const AnyMotion> learned(TableReader& motion, const MotionLayout& layout) {
+  const LearnedMotionSpec spec = read_learned_motion_spec(motion);
+  const std::shared_ptr<const AnyMotion> around = read_motion(motion.table("around"), layout);
+  if (!std::filesystem::exists(spec.file))
+    throw motion.error("file", "names " + spec.file.string() + ", which does not exist",
+                       "run `truebearing train " + motion.file() + "`");
+  const auto residual = std::make_shared<const MotionResidual>(read_learned_motion_file(spec.file));
+  if (residual->network.inputs() != around->states())
+    throw motion.error(
+        "file", fmt::format("was trained for a state of {} components", residual->network.inputs()),
+        fmt::format("{}, as \"around\" has; run `truebearing train {}`", around->states(), motion.file()));
+  std::shared_ptr<const AnyMotion> made;
+  with_count(around->states(), [&]<int N>(std::integral_constant<int, N>) {
+    if constexpr (N >= 2 && N <= 7)
+      made = erased(LearnedMotion<N>{std::static_pointer_cast<const SizedMotion<N>>(around), residual}, around->rest());
+  });
+  return made;
+}
+
 using Read = std::shared_ptr<const AnyMotion> (*)(TableReader& motion, const MotionLayout& layout);
 
 struct MotionKind {
   const char* model;
-  Read on_line;   ///< nullptr where there is none
-  Read in_plane;  ///< with a frequency or without; nullptr where there is none
+  Read on_line;                 ///< nullptr where there is none
+  Read in_plane;                ///< with a frequency or without; nullptr where there is none
+  Read on_attractor = nullptr;  ///< of Lorenz; nullptr where there is none
+
+  Read in(const MotionLayout& layout) const {
+    return layout.is_lorenz ? on_attractor : layout.dimensions == 1 ? on_line : in_plane;
+  }
 };
 
 constexpr MotionKind kKinds[] = {
@@ -101,11 +138,16 @@ constexpr MotionKind kKinds[] = {
     {"constant_jerk", constant_jerk, nullptr},  // eight states in the plane, more than are compiled
     {"singer", singer<1>, singer<2>},
     {"turning_target", nullptr, turning_target},
+    {"lorenz_taylor", nullptr, nullptr, lorenz_attractor},
+    {"lorenz_rk4", nullptr, nullptr, lorenz_attractor},
+    {"learned", learned, learned, learned},
 };
 
 // One table of `modes` is one mode, or with turn_rates_degps one for each rate.
 void read_mode(TableReader& mode, const MotionLayout& layout, AnyMotions& motions) {
-  if (layout.dimensions == 1 || !mode.has("turn_rates_degps")) {
+  if (layout.is_lorenz || layout.dimensions == 1 || !mode.has("turn_rates_degps")) {
+    if ((*mode.raw())["model"].value_or(std::string()) == "learned")
+      throw mode.error("model", "is \"learned\", which is taught as the only motion of a tracker", "another model");
     motions.push_back(read_motion(mode, layout));
     return;
   }
@@ -121,11 +163,11 @@ void read_mode(TableReader& mode, const MotionLayout& layout, AnyMotions& motion
 std::shared_ptr<const AnyMotion> read_motion(TableReader motion, const MotionLayout& layout) {
   std::vector<std::string> models;
   for (const MotionKind& kind : kKinds)
-    if (layout.dimensions == 1 ? kind.on_line : kind.in_plane) models.emplace_back(kind.model);
+    if (kind.in(layout)) models.emplace_back(kind.model);
   const std::string model = motion.choice("model", models);
   for (const MotionKind& kind : kKinds) {
     if (model != kind.model) continue;
-    std::shared_ptr<const AnyMotion> read = (layout.dimensions == 1 ? kind.on_line : kind.in_plane)(motion, layout);
+    std::shared_ptr<const AnyMotion> read = kind.in(layout)(motion, layout);
     motion.finish();
     return read;
   }

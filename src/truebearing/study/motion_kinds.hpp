@@ -17,6 +17,7 @@ struct MotionLayout {
   bool has_frequency = false;         ///< of a source, behind the velocities; in the plane only
   double frequency_q_hz2ps = 0.0;     ///< its random walk
   double process_noise_factor = 1.0;  ///< of the motion's process noise covariance, as hypotheses of a bank have it
+  bool is_lorenz = false;             ///< the Lorenz attractor's, which has neither positions nor velocities
 };
 
 /// { model, ... }: asks for all keys of `motion` and finishes it. Throws InputError.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "truebearing/study/parameters_file.hpp"
 
+#include <cmath>
 #include <fmt/format.h>
 #include <string_view>
 #include <toml++/toml.h>
@@ -80,7 +81,8 @@ ParametersFile read_parameters_file(const std::filesystem::path& path) {
       if (name == "provenance")
         parameters.provenance.emplace_back(parameter, tracker.text(parameter));
       else
-        parameters.trackers[name][parameter] = tracker.numbers(parameter, -1, kPositive);
+        parameters.trackers[name][parameter] =
+            tracker.numbers(parameter, -1, parameter == kMeasurementMatrix ? kAnyNumber : kPositive);
     }
   }
   return parameters;
@@ -114,7 +116,7 @@ std::vector<double> numbers_at(const toml::table& table, const std::string& path
   }
   if (values.empty()) throw InputError(where, "\"" + path + "\" is no number or array of numbers of the tracker");
   for (const double value : values)
-    if (!(value > 0.0))
+    if (path == kMeasurementMatrix ? !std::isfinite(value) : !(value > 0.0))
       throw InputError(where, fmt::format("\"{}\" holds {}", path, value), "numbers > 0 as a start for tuning");
   return values;
 }

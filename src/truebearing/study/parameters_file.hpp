@@ -27,7 +27,11 @@ struct ParametersFile {
 ParametersFile read_parameters_file(const std::filesystem::path& path);
 std::string parameters_text(const ParametersFile& parameters);
 
-/// The numbers at a dotted path of a tracker's table. Throws InputError where there are none, or one that is not > 0.
+/// The path of numbers of any sign: they are fitted by least squares, not by their logarithms.
+inline constexpr const char* kMeasurementMatrix = "measurement.matrix";
+
+/// The numbers at a dotted path of a tracker's table. Throws InputError where there are none, or one that is not > 0
+/// (of the matrix above: not finite).
 std::vector<double> numbers_at(const toml::table& table, const std::string& path, const std::string& where);
 /// The table with these numbers there, as an array or as a lone number as it was.
 SharedTable with_numbers(const toml::table& table, const std::string& path, const std::vector<double>& values);

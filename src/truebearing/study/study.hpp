@@ -91,6 +91,7 @@ class Study {
   Study() = default;
   void read(const StudyFile& file);
   void check_trackers();
+  bool lacks_motion(const TrackerSpec& spec) const;
   void check_limit(const TrackerSpec& spec);
   void check_replay(const TrackerSpec& spec, const Tracker& tracker);
 

@@ -16,6 +16,7 @@ namespace truebearing {
 
 void Study::check_trackers() {
   for (const TrackerSpec& spec : trackers_) {
+    if (lacks_motion(spec)) continue;
     if (!spec.correction) {
       TableReader reader = tracker_reader(spec, spec.configuration, path_.string());
       ask_for_study_keys(reader);
@@ -46,6 +47,14 @@ void Study::check_trackers() {
       throw InputError(path_.string() + ": trackers." + spec.name + ": " + error.where(), error.found(), error.valid());
     }
   }
+}
+
+// Whether it, or a tracker that it looks at, moves by what is yet to be learned: who makes it then is told what to run.
+bool Study::lacks_motion(const TrackerSpec& spec) const {
+  const auto lacks = [](const TrackerSpec& one) { return one.learned && !std::filesystem::exists(one.learned->file); };
+  if (!spec.correction) return lacks(spec);
+  const std::vector<std::string> members = spec.correction->members();
+  return std::any_of(members.begin(), members.end(), [&](const std::string& name) { return lacks(tracker(name)); });
 }
 
 // What knows the family is a bound of it, named as one or not.

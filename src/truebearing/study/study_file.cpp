@@ -47,6 +47,10 @@ class MovedPaths {
   void in_tracker(toml::table& tracker) const {
     text(tracker, "model");
     text(tracker, "file");
+    if (auto* motion = tracker["motion"].as_table()) {
+      text(*motion, "file");
+      if (auto* training = (*motion)["training"].as_table()) in_changed_scenario(*training, "scenario");
+    }
     if (auto* training = tracker["training"].as_table())
       for (const char* key : {"scenario", "covariance_scenario"}) in_changed_scenario(*training, key);
   }

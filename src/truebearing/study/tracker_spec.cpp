@@ -104,6 +104,10 @@ TrackerSpec read_tracker_spec(const std::string& name, const SharedTable& resolv
     spec.correction = read_correction_spec(reader);
     reader.finish();
   }
+  if (reader.raw()->at_path("motion.model").value_or(std::string()) == "learned") {
+    TableReader motion = reader.table("motion");
+    spec.learned = read_learned_motion_spec(motion);
+  }
   toml::table configuration = *resolved;
   for (const char* key : kStudyKeys) configuration.erase(key);
   spec.configuration = std::make_shared<const toml::table>(std::move(configuration));

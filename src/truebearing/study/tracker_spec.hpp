@@ -8,6 +8,7 @@
 
 #include "truebearing/io/table_reader.hpp"
 #include "truebearing/study/correction_spec.hpp"
+#include "truebearing/study/learned_motion_spec.hpp"
 #include "truebearing/study/study_file.hpp"
 
 namespace truebearing {
@@ -20,6 +21,7 @@ struct TrackerSpec {
   std::vector<std::string> tune;             ///< dotted paths of the numbers that `truebearing tune` fits
   bool shown = true;                         ///< false for companions that no table needs
   std::optional<CorrectionSpec> correction;  ///< where kind is "corrected"
+  std::optional<LearnedMotionSpec> learned;  ///< where motion.model is "learned"
 };
 
 /// The trackers of a study, whose file messages call `name`. Throws InputError, also where they are `like` one

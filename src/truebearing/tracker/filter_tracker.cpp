@@ -49,6 +49,7 @@ FilterTracker::FilterTracker(const StateSpace& space, std::unique_ptr<TrackedSta
       options_(options),
       state_(std::move(state)),
       kept_(state_->fresh()),
+      ahead_(options_.ahead_s > 0.0 ? state_->fresh() : nullptr),
       challenger_(state_->fresh()) {
   check();
   reset();
@@ -65,6 +66,8 @@ void FilterTracker::check() const {
     throw std::invalid_argument("a start from a range needs measured bearings");
   if (options_.output_pull > 0.0 && !sensor_->measures_position())
     throw std::invalid_argument("output_pull needs measured positions");
+  if (options_.output_pull > 0.0 && options_.ahead_s > 0.0)
+    throw std::invalid_argument("output_pull is of the present");
   if (space_->size() > state_->size() || sensor_->states() > state_->size())
     throw std::invalid_argument("the state is shorter than its space, or than what the sensor looks at");
 }
@@ -228,7 +231,7 @@ StepStatus FilterTracker::cross(double dt_s, TrackedState& state) const {
 bool FilterTracker::predict(double dt_s) {
   record_.status = cross(dt_s, *state_);
   Prediction& prediction = record_.prediction.emplace(Unfilled());
-  const bool sensible = copy_published(prediction.x, prediction.P);
+  const bool sensible = copy_published(*state_, prediction.x, prediction.P);
   // A failed prediction leaves the filter where it was, which is not where it would be by now.
   if (record_.status == StepStatus::failed) {
     ++guard_.counts.failed;
@@ -351,7 +354,12 @@ void FilterTracker::pull(const SizedMeasurement<M>& measurement) {
 
 // False where the state is no track; what it is stands in the record all the same.
 bool FilterTracker::publish() {
-  const bool sensible = copy_published(record_.x, record_.P);
+  bool sensible = true;
+  if (ahead_) {
+    ahead_->assign(*state_);
+    sensible = ahead_->predict(options_.ahead_s) == StepStatus::ok;
+  }
+  sensible &= copy_published(ahead_ ? *ahead_ : *state_, record_.x, record_.P);
   if (options_.output_pull > 0.0 && record_.gain) {
     record_.x.head(moved_.size()) += moved_;
     record_.P.topLeftCorner(moved_.size(), moved_.size()) += spread_;
@@ -361,13 +369,13 @@ bool FilterTracker::publish() {
 }
 
 // Without the components that the space does not have. False where the state is no track (is_sensible()).
-bool FilterTracker::copy_published(BoundedVector& x, BoundedMatrix& P) const {
+bool FilterTracker::copy_published(const TrackedState& state, BoundedVector& x, BoundedMatrix& P) const {
   const int n = space_->size();
-  const double *from_x = state_->x_data(), *from_P = state_->P_data();
+  const double *from_x = state.x_data(), *from_P = state.P_data();
   bool sensible = true;
   x.resize(n);
   P.resize(n, n);
-  with_count(state_->size(), [&]<int N>(std::integral_constant<int, N>) {
+  with_count(state.size(), [&]<int N>(std::integral_constant<int, N>) {
     using Vector = Eigen::Matrix<double, N, 1>;
     using Matrix = Eigen::Matrix<double, N, N>;
     sensible = is_sensible<N>(from_x, from_P, n / 2);

@@ -26,14 +26,17 @@ struct FilterTrackerOptions {
   /// x + beta (z - x), for truth that follows what was recorded rather than what was flown. The filter itself goes on
   /// without it. Of measured positions only.
   double output_pull = 0.0;
+  /// What is published is where the target will be in so many seconds; the filter itself goes on without that. Not with
+  /// output_pull.
+  double ahead_s = 0.0;
 };
 
 /// A state of more components than `space` has is published without the last of them.
 class FilterTracker : public Successor {
  public:
   /// A PriorStart has as many components as the state. Throws std::invalid_argument where the parts do not fit: a start
-  /// that the sensor cannot tell, an output_pull without measured positions, a state shorter than its space or than what
-  /// the sensor looks at.
+  /// that the sensor cannot tell, an output_pull without measured positions or ahead of time, a state shorter than its
+  /// space or than what the sensor looks at.
   FilterTracker(const StateSpace& space, std::unique_ptr<TrackedState> state, std::unique_ptr<AnySensor> sensor,
                 Start start, FilterTrackerOptions options = {});
 
@@ -67,7 +70,7 @@ class FilterTracker : public Successor {
   void pull(const SizedMeasurement<M>& measurement);
   bool publish();
   void clear_blocks();
-  bool copy_published(BoundedVector& x, BoundedMatrix& P) const;
+  bool copy_published(const TrackedState& state, BoundedVector& x, BoundedMatrix& P) const;
 
   const StateSpace* space_;
   std::unique_ptr<AnySensor> sensor_;
@@ -80,6 +83,7 @@ class FilterTracker : public Successor {
   // At the last measurement that was used, between steps. Within one the state goes on, and what it was is kept.
   std::unique_ptr<TrackedState> state_;
   std::unique_ptr<TrackedState> kept_;
+  std::unique_ptr<TrackedState> ahead_;  // of state_ after ahead_s, for publishing
   double used_time_s_ = 0.0;
   bool lost_ = false;      // the next usable measurement begins a new track
   int failed_in_row_ = 0;  // updates

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// The published tables on the Lorenz attractor, on the committed models. Fewer runs than the figures of docs/results.md:
+// two standard errors are allowed on top.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "tests/support/comparisons.hpp"
+
+namespace truebearing::lorenz_acceptance_test {
+namespace {
+
+using testing::load_study;
+
+struct Decibels {
+  double mse = 0.0;
+  double se = 0.0;
+};
+
+// Of the mean over components, steps and runs of the squared error.
+Decibels decibels(const Comparison& comparison, const std::string& tracker) {
+  const QuantitySummary& state = *comparison.tracker(tracker)->quantity("state");
+  return {20.0 * std::log10(state.rmse) - 10.0 * std::log10(3.0), 20.0 / std::log(10.0) * state.rmse_se / state.rmse};
+}
+
+void expect_below(const Comparison& comparison, const std::string& tracker, double bar) {
+  const Decibels found = decibels(comparison, tracker);
+  EXPECT_LT(found.mse, bar + 2.0 * found.se) << tracker;
+}
+
+Comparison run(const std::string& name, std::size_t runs, const std::vector<std::string>& sets) {
+  const Study study = load_study(name);
+  std::vector<NamedScenario> scenarios;
+  for (const NamedScenario& scenario : study.evaluation_scenarios())
+    if (std::find(sets.begin(), sets.end(), scenario.name) != sets.end()) scenarios.push_back(scenario);
+  EXPECT_EQ(scenarios.size(), sets.size());
+  ComparisonOptions options = study.comparison_options();
+  options.runs = runs;
+  options.seed = 20;
+  return compare(study.make_tracker_set(), scenarios, options);
+}
+
+TEST(Lorenz, MismatchIsReproducedAndLearned) {
+  const Comparison published = run("lorenz_mismatch", 3, {"published"});
+  const Decibels ekf = decibels(published, "ekf");
+  EXPECT_NEAR(ekf.mse, -6.32, 0.15 + 2.0 * ekf.se);
+  const Comparison fresh = run("lorenz_mismatch", 3, {"fresh"});
+  for (const Comparison& comparison : {published, fresh}) {
+    expect_below(comparison, "rk4_tuned", -14.3);
+    expect_below(comparison, "learned", -14.0);
+    EXPECT_LT(decibels(comparison, "learned").mse, decibels(comparison, "tuned").mse - 2.0);
+  }
+}
+
+TEST(Lorenz, RotationIsFittedFromPairs) {
+  const Comparison comparison = run("lorenz_rotated", 20, {"long"});
+  expect_below(comparison, "fitted", -40.0);
+  EXPECT_GT(decibels(comparison, "ekf").mse, -20.0);
+  EXPECT_NEAR(decibels(comparison, "fitted").mse, decibels(comparison, "aligned").mse, 0.1);
+}
+
+}  // namespace
+}  // namespace truebearing::lorenz_acceptance_test

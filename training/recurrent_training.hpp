@@ -36,11 +36,21 @@ struct RecurrentOptions {
 /// Called after each epoch with its number from 1, their total, and the mean squared error of the validation's rows.
 using RecurrentProgress = std::function<void(int epoch, int total, double cost)>;
 
+/// Where a training stands between two epochs: encoder, gates and output in the order of GatedRecurrent::Parameters, and
+/// of each what Adam remembers. The random draws are made again, the cost of the best epoch is measured again.
+struct RecurrentState {
+  int epochs = 0;  ///< done; 0: not begun
+  std::vector<Eigen::MatrixXf> weights, mean, square, best;
+};
+/// Called after each epoch whose cost is a number; may be empty.
+using KeepRecurrentState = std::function<void(const RecurrentState& state)>;
+
 /// What the module exports, under kRecurrentTrainer: fits encoder, gates and output of `parameters` by truncated
 /// back-propagation, Adam and a one-cycle rate, and keeps the epoch that was best on the validation's rows. Returns their
-/// mean squared error. The same for the same rows and options, to the bit.
+/// mean squared error. The same for the same rows and options, to the bit, whether it goes on from `begun` or begins.
 using RecurrentTrainer = double(const RecurrentRows& training, const RecurrentRows& validation,
-                                const RecurrentOptions& options, const RecurrentProgress& progress,
+                                const RecurrentOptions& options, const RecurrentState& begun,
+                                const KeepRecurrentState& keep, const RecurrentProgress& progress,
                                 GatedRecurrent::Parameters& parameters);
 /// Fits the covariance head of `parameters`, whose other layers stay, to errors (n x N, in standard deviations) by their
 /// Gaussian likelihood. Returns its mean per row.

@@ -13,6 +13,7 @@
 #include "training/back_propagation.hpp"
 #include "training/covariance_inflation.hpp"
 #include "training/covariance_moments.hpp"
+#include "training/recurrent_checkpoint.hpp"
 #include "training/recurrent_training.hpp"
 #include "training/variable_projection.hpp"
 #include "truebearing/study/configuration_text.hpp"
@@ -223,14 +224,18 @@ Network train_recurrent(const Lessons& lessons, const CorrectionSpec& spec, cons
   parameters.output_scale =
       (data.labels.colwise().squaredNorm().transpose() / taught).cwiseSqrt().cwiseMax(kLeastScale);
   const RecurrentRows rows = recurrent_rows(lessons.teacher, parameters, data);
-  report.cost = module.train(rows, recurrent_rows(lessons.validation, parameters, data),
-                             {.units = spec.training.units,
-                              .epochs = spec.training.epochs,
-                              .batch = spec.training.batch,
-                              .learning_rate = spec.training.learning_rate,
-                              .seed = options.seed,
-                              .two_threads = options.threads != 1},
-                             options.training_progress, parameters);
+  const RecurrentRows validation = recurrent_rows(lessons.validation, parameters, data);
+  const RecurrentOptions recurrent{.units = spec.training.units,
+                                   .epochs = spec.training.epochs,
+                                   .batch = spec.training.batch,
+                                   .learning_rate = spec.training.learning_rate,
+                                   .seed = options.seed,
+                                   .two_threads = options.threads != 1};
+  const RecurrentCheckpoint checkpoint(options.checkpoint, rows, validation, recurrent);
+  KeepRecurrentState keep;
+  if (!options.checkpoint.empty()) keep = [&](const RecurrentState& state) { checkpoint.write(state); };
+  report.cost =
+      module.train(rows, validation, recurrent, checkpoint.read(), keep, options.training_progress, parameters);
   const Eigen::Index n = lessons.space.size(), entries = n * (n + 1) / 2;
   parameters.covariance_weight = Eigen::MatrixXf::Zero(entries, spec.training.units);
   parameters.covariance_bias = Eigen::VectorXf::Zero(entries);

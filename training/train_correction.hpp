@@ -19,6 +19,9 @@ struct TrainOptions {
   TrainingProgress training_progress;  ///< iterations done
   std::filesystem::path torch_folder =
       {};  ///< of the module that teaches recurrent networks; empty: recurrent_module()
+  /// A file that the training of a recurrent network keeps after each epoch and goes on from; it stays, for the caller
+  /// to remove once the model is safe. Empty: none.
+  std::filesystem::path checkpoint = {};
 };
 
 struct TrainReport {

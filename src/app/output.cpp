@@ -138,12 +138,22 @@ ProgressLine::~ProgressLine() {
 
 void ProgressLine::show(std::size_t done, std::size_t total) {
   const Clock::time_point now = Clock::now();
-  if (!active_ || done == 0 || now - last_ < std::chrono::milliseconds(200)) return;
+  if (!active_ || done == 0) return;
+  if (first_done_ == 0) {
+    first_done_ = done;
+    begin_ = now;
+  } else if (now - last_ < std::chrono::milliseconds(200)) {
+    return;
+  }
   last_ = now;
   shown_ = true;
-  const double elapsed_s = std::chrono::duration<double>(now - begin_).count();
-  const double left_s = elapsed_s * static_cast<double>(total - done) / static_cast<double>(done);
-  std::fputs(fmt::format("\r\033[K{} {}/{}, {:.0f} s left", label_, done, total, left_s).c_str(), stderr);
+  std::string line = fmt::format("\r\033[K{} {}/{}", label_, done, total);
+  if (done > first_done_) {
+    const double elapsed_s = std::chrono::duration<double>(now - begin_).count();
+    const double left_s = elapsed_s * static_cast<double>(total - done) / static_cast<double>(done - first_done_);
+    line += fmt::format(", {:.0f} s left", left_s);
+  }
+  std::fputs(line.c_str(), stderr);
   std::fflush(stderr);
 }
 

@@ -54,7 +54,8 @@ void write_output(const std::string& path, const std::string& text);
 /// A line for whoever watches, on standard error. Nobody may be there: what cannot be written is lost.
 void say(const std::string& line);
 
-/// A line on the terminal that says how far long work is and how long it will still take. Silent where standard output
+/// A line on the terminal that says how far long work is and, from the second time that it is shown, how long it will
+/// still take: work may begin after its line does, and may go on from where it was broken off. Silent where standard output
 /// or standard error is no terminal, or `quiet`.
 class ProgressLine {
  public:
@@ -72,6 +73,7 @@ class ProgressLine {
   std::string label_;
   bool active_;
   bool shown_ = false;
+  std::size_t first_done_ = 0;  // when it was shown first
   Clock::time_point begin_;
   Clock::time_point last_;
 };

@@ -56,18 +56,25 @@ void train(const TrainArguments& options) {
   for (const std::string& name : names) {
     own.push_back(study.tracker(name).correction->model);
     outputs.push_back(options.output.empty() ? own.back().string() : options.output);
-    if (study.tracker(name).correction->design.network == NetworkKind::recurrent && is_standard_output(outputs.back()))
-      throw InputError("-o", "is one stream, and the model of \"" + name + "\" two files", "a file's name");
   }
   check_products(study, outputs, own);
-  const CorrectionModels models =
-      train_study(study, names, {options.seed.value_or(study.seed()), options.threads, options.quiet});
+  WorkflowOptions workflow{options.seed.value_or(study.seed()), options.threads, options.quiet};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (study.tracker(names[i]).correction->design.network != NetworkKind::recurrent) continue;
+    if (is_standard_output(outputs[i]))
+      throw InputError("-o", "is one stream, and the model two files", "a file's name");
+    workflow.checkpoints[names[i]] = outputs[i] + ".checkpoint";
+  }
+  const CorrectionModels models = train_study(study, names, workflow);
   for (std::size_t i = 0; i < names.size(); ++i) {
     const CorrectionModel& model = *models.at(names[i]);
-    if (weights_name(model).empty()) {
+    if (weights_name(model).empty())
       write_output(outputs[i], model_text(model));
-    } else {
+    else
       write_model_file(outputs[i], model);
+    if (const auto checkpoint = workflow.checkpoints.find(names[i]); checkpoint != workflow.checkpoints.end()) {
+      std::error_code ignored;
+      std::filesystem::remove(checkpoint->second, ignored);
     }
     if (!is_standard_output(outputs[i])) fmt::print("written: {}\n", outputs[i]);
   }

@@ -139,6 +139,8 @@ CorrectionModels train_study(const Study& study, const std::vector<std::string>&
       TrainOptions train_options{options.seed, options.threads, teacher.callback(), [&](int done, int total, double) {
                                    training.show(static_cast<std::size_t>(done), static_cast<std::size_t>(total));
                                  }};
+      if (const auto file = options.checkpoints.find(name); file != options.checkpoints.end())
+        train_options.checkpoint = file->second;
       model = train_correction(study, name, train_options, &report);
     }
     CorrectionModels trained{{name, std::make_shared<const CorrectionModel>(model)}};

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,8 @@ struct WorkflowOptions {
   std::uint64_t seed = 1;
   int threads = 0;
   bool quiet = false;
+  /// Where trainings that take long keep how far they are, by the tracker's name; none where not named.
+  std::map<std::string, std::filesystem::path> checkpoints = {};
 };
 
 /// Whether the study has a tracker with something to tune.

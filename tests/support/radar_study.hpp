@@ -70,6 +70,27 @@ iterations = 10
 mirror = true
 )";
 
+/// A recurrent network beside them.
+inline const std::string kRecurrentStudy = kStudy + R"(
+[trackers.gru]
+kind = "corrected"
+network = "gru"
+base = "plain"
+reference = "tuned"
+kappa = 3.0
+model = "small.gru.json"
+features = [
+  { kind = "innovation" },
+  { kind = "companion_difference", companion = "wide", component = "velocity_mps", scale = 100.0 },
+]
+
+[trackers.gru.training]
+units = 4
+runs = 20
+epochs = 6
+batch = 8
+)";
+
 inline const std::string kParameters = "[tuned]\n\"start.variance\" = [1e6, 53000.0]\n";
 
 /// The text with the first `from` in it replaced.

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numeric>
 #include <thread>
 #include <utility>
@@ -169,8 +170,53 @@ void keep(const Net& net, GatedRecurrent::Parameters& parameters) {
   parameters.output_bias = matrix(net.output->bias);
 }
 
+void set(const Tensor& parameter, const Eigen::MatrixXf& values) {
+  const torch::NoGradGuard guard;
+  Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows = values;
+  parameter.copy_(torch::from_blob(rows.data(), parameter.sizes()));
+}
+
+void set(const std::vector<Tensor>& parameters, const std::vector<Eigen::MatrixXf>& values) {
+  for (std::size_t i = 0; i < parameters.size(); ++i) set(parameters[i], values[i]);
+}
+
+std::unique_ptr<torch::optim::OptimizerParamState>& remembered(torch::optim::Adam& adam, const Tensor& parameter) {
+  return adam.state()[c10::guts::to_string(parameter.unsafeGetTensorImpl())];
+}
+
+RecurrentState state_of(const Net& net, torch::optim::Adam& adam, const GatedRecurrent::Parameters& best, int epochs) {
+  RecurrentState state{.epochs = epochs,
+                       .weights = {},
+                       .mean = {},
+                       .square = {},
+                       .best = {best.encoder_weight, best.encoder_bias, best.weight_ih, best.weight_hh, best.bias_ih,
+                                best.bias_hh, best.output_weight, best.output_bias}};
+  for (const Tensor& parameter : net.parameters()) {
+    const auto& kept = static_cast<const torch::optim::AdamParamState&>(*remembered(adam, parameter));
+    state.weights.push_back(matrix(parameter));
+    state.mean.push_back(matrix(kept.exp_avg()));
+    state.square.push_back(matrix(kept.exp_avg_sq()));
+  }
+  return state;
+}
+
+void go_on(const RecurrentState& begun, std::int64_t steps, const Net& net, torch::optim::Adam& adam) {
+  const std::vector<Tensor> parameters = net.parameters();
+  set(parameters, begun.weights);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    auto kept = std::make_unique<torch::optim::AdamParamState>();
+    kept->step(steps);
+    kept->exp_avg(torch::zeros_like(parameters[i]));
+    kept->exp_avg_sq(torch::zeros_like(parameters[i]));
+    set(kept->exp_avg(), begun.mean[i]);
+    set(kept->exp_avg_sq(), begun.square[i]);
+    remembered(adam, parameters[i]) = std::move(kept);
+  }
+}
+
 double train(const RecurrentRows& training, const RecurrentRows& validation, const RecurrentOptions& options,
-             const RecurrentProgress& progress, GatedRecurrent::Parameters& best) {
+             const RecurrentState& begun, const KeepRecurrentState& keep_state, const RecurrentProgress& progress,
+             GatedRecurrent::Parameters& best) {
   one_thread_each();
   torch::manual_seed(options.seed);
   RandomStream random({.seed = options.seed, .role = Role::training, .run = 0}, StreamId::learning);
@@ -184,7 +230,15 @@ double train(const RecurrentRows& training, const RecurrentRows& validation, con
   std::vector<std::size_t> order(tracks.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   double least = std::numeric_limits<double>::infinity();
+  if (begun.epochs > 0) {
+    set(parameters, begun.best);
+    keep(net, best);
+    least = mean_squared_error(net, validation, validated, options.batch / 2, options.two_threads);
+    go_on(begun, begun.epochs * static_cast<std::int64_t>(batches), net, adam);
+    if (progress) progress(begun.epochs, options.epochs, least);
+  }
   for (int epoch = 0; epoch < options.epochs; ++epoch) {
+    const bool done_before = epoch < begun.epochs;  // all but its random draws
     for (std::size_t i = order.size(); i > 1; --i)
       std::swap(order[i - 1], order[static_cast<std::size_t>(random.uniform() * static_cast<double>(i))]);
     for (std::size_t b = 0; b < batches; ++b) {
@@ -198,6 +252,7 @@ double train(const RecurrentRows& training, const RecurrentRows& validation, con
       for (std::size_t half = 0; half < 2; ++half)
         for (std::size_t k = 0; k < chosen[half].size(); ++k)
           mirrored[half].push_back(training.parity.size() > 0 && random.uniform() < 0.5);
+      if (done_before) continue;
       std::array<std::vector<Tensor>, 2> gradients;
       std::array<double, 2> taught{};
       halves(options.two_threads, [&](int half) {
@@ -220,20 +275,16 @@ double train(const RecurrentRows& training, const RecurrentRows& validation, con
           .lr(options.learning_rate * one_cycle(done));
       adam.step();
     }
+    if (done_before) continue;
     const double cost = mean_squared_error(net, validation, validated, options.batch / 2, options.two_threads);
     if (cost < least) {
       least = cost;
       keep(net, best);
     }
+    if (keep_state && std::isfinite(cost)) keep_state(state_of(net, adam, best, epoch + 1));
     if (progress) progress(epoch + 1, options.epochs, cost);
   }
   return least;
-}
-
-void set(const Tensor& parameter, const Eigen::MatrixXf& values) {
-  const torch::NoGradGuard guard;
-  Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows = values;
-  parameter.copy_(torch::from_blob(rows.data(), parameter.sizes()));
 }
 
 Eigen::MatrixXf answers(const GatedRecurrent::Parameters& parameters, const Eigen::MatrixXf& inputs) {

@@ -14,6 +14,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "truebearing/core/error.hpp"
 #include "truebearing/correction/model_file.hpp"
+#include "truebearing/io/safetensors.hpp"
 #include "truebearing/io/table_reader.hpp"
 #include "truebearing/recording/geographic_track.hpp"
 #include "truebearing/recording/recording_csv.hpp"
@@ -74,6 +75,9 @@ void read(std::uint8_t reader, const std::string& text) {
       break;
     case 'm':
       parse_model(text, "hostile.json");
+      break;
+    case 'w':
+      parse_safetensors(text, "hostile.safetensors");
       break;
     case 'p':
       read_file(text, read_parameters_file);

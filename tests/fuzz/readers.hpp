@@ -7,10 +7,10 @@
 
 namespace truebearing::testing {
 
-/// The first byte says which reader: r recording, g geographic track, s step log, t TOML, m model, p parameters, y study,
-/// h snapshots; f a file of these that is made of the rest, c what the child that reads one answers
-/// (snapshot_files.hpp). True where the rest was read; where it was refused by an InputError, false. Nothing else may
-/// happen.
+/// The first byte says which reader: r recording, g geographic track, s step log, t TOML, m model, w its weights,
+/// p parameters, y study, h snapshots; f a file of these that is made of the rest, c what the child that reads one
+/// answers (snapshot_files.hpp). True where the rest was read; where it was refused by an InputError, false. Nothing
+/// else may happen.
 /// Of e the rest drives a tracker (estimators.hpp): true where it published anything.
 bool read_hostile(std::span<const std::uint8_t> bytes);
 

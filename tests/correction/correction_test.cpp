@@ -139,6 +139,33 @@ TEST(Correction, HandOverCovarianceIsThatOfTheMixture) {
   }
 }
 
+// Of a residual a fifth of an edge outside a box that ends at 1 and is 2 wide, and a wish of five standard deviations.
+TEST(Correction, AccountSaysWhatWasAskedAndWhoHeldItBack) {
+  Scene s = scene();
+  s.base->record.innovation->z[0] = 1.04;
+  CorrectionModel model = line_model(kResidual, constant(1, {5.0, 0.0}), "base", "reference", "source");
+  model.gate = box(1, -1.0, 1.0, 100.0);
+  Correction correction(shared(model), s.ensemble);
+  EXPECT_TRUE(correction.accounts().empty());
+  s.ensemble.step(position(1.0, 0.0));
+  const StepRecord record = correction.correct(s.ensemble)[0];
+  ASSERT_EQ(correction.accounts().size(), 1u);
+  const CorrectionAccount& account = correction.accounts()[0];
+  ASSERT_TRUE(account.asked());
+  EXPECT_NEAR(account.features[0], 1.04, 1e-12);
+  EXPECT_NEAR(account.box, std::exp(-0.5 * 0.2 * 0.2), 1e-12);
+  EXPECT_EQ(account.box, record.correction->gate);
+  EXPECT_EQ(account.referee.position, 1.0);
+  EXPECT_NEAR(account.disagreement, 5.0 / std::sqrt(2.0), 1e-12);
+  EXPECT_NEAR(account.wanted_sigmas, 5.0, 1e-12);
+  EXPECT_NEAR(record.correction->distance_sigmas, 3.0 * account.box, 1e-12) << "what kappa left of it";
+
+  s.base->record.innovation->z[0] = kNaN;
+  s.ensemble.step(position(2.0, 0.0));
+  correction.correct(s.ensemble);
+  EXPECT_FALSE(correction.accounts()[0].asked()) << "what has no value is not asked about";
+}
+
 // What bounds a correction is said beside the model, and may change without it.
 TEST(Correction, GateThatIsNotUsedLeavesTheBoxAside) {
   Scene s = scene();

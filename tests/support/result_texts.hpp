@@ -32,6 +32,49 @@ inline ResultJson tracker_json(double rmse, double nees, bool details) {
   return json;
 }
 
+/// Two rules over two features, in three of the four steps.
+inline ResultJson correction_json() {
+  const auto feature = [](const char* name, double outside) {
+    return ResultJson{{"name", name},
+                      {"mean", 1.0},
+                      {"scale", 0.5},
+                      {"clip", 4.0},
+                      {"low", 0.0},
+                      {"high", 2.0},
+                      {"seen",
+                       {{"mean", 1.25},
+                        {"deviation", 0.5},
+                        {"least", 0.1},
+                        {"greatest", 2.5},
+                        {"outside", outside},
+                        {"counted", {0.0, 3.0, 6.0, 0.0}}}}};
+  };
+  const auto rule = [](const char* conditions, double usage, double fired) {
+    return ResultJson{{"if", conditions}, {"add", "+12 m"},     {"taught", "+11 m"},      {"usage", usage},
+                      {"fired", fired},   {"strongest", fired}, {"centre", {0.5, usage}}, {"width", {0.2, 0.3}}};
+  };
+  return {{"network", "nfnn"},
+          {"size", "2 rules"},
+          {"base", "plain"},
+          {"reference", "tuned"},
+          {"bounds", "kappa 3, gate, no referee"},
+          {"kappa", 3.0},
+          {"steps", 12.0},
+          {"asked", 9.0},
+          {"outside_intervals", 0.25},
+          {"outside_disagreement", 0.0},
+          {"by_step",
+           {{"gate", {nullptr, 1.0, 0.5, 0.9}},
+            {"box", {nullptr, 1.0, 0.5, 0.9}},
+            {"referee", {nullptr, 1.0, 1.0, 1.0}},
+            {"limited", {nullptr, 0.0, 0.25, 0.0}},
+            {"handed_over", {nullptr, 0.0, 0.0, 0.0}},
+            {"wanted_sigmas", {nullptr, 1.0, 4.0, 2.0}},
+            {"moved_sigmas", {nullptr, 1.0, 1.5, 1.8}}}},
+          {"features", {feature("gain in position_m", 0.125), feature("ln step", 0.0)}},
+          {"rules", {rule("gain is SMALL", 0.7, 0.4), rule("gain is LARGE", 0.3, 0.6)}}};
+}
+
 inline ResultJson picture_json() {
   const ResultJson line{{"track", 0},
                         {"time_s", {1.0, 2.0, 3.0, 4.0}},

@@ -93,6 +93,8 @@ Correction::Correction(std::shared_ptr<const CorrectionModel> model, const Ensem
 void Correction::reset() {
   tracks_.assign(1, Track{-1, false, inputs_.extractor(), first_memory(model_->network), {}, {}});
   records_.assign(1, StepRecord{});
+  accounts_.assign(1, CorrectionAccount{});
+  given_ = 0;
 }
 
 Correction::Track& Correction::track_of(int id) {
@@ -111,11 +113,14 @@ Correction::Track& Correction::track_of(int id) {
 std::span<const StepRecord> Correction::correct(const Ensemble& ensemble) {
   const std::span<const StepRecord> references = ensemble.records(inputs_.reference());
   if (records_.size() < references.size()) records_.resize(references.size());
+  if (accounts_.size() < references.size()) accounts_.resize(references.size());
+  given_ = references.size();
   for (Track& track : tracks_)
     track.seen =
         std::any_of(references.begin(), references.end(), [&](const StepRecord& r) { return r.track == track.id; });
 
   for (std::size_t i = 0; i < references.size(); ++i) {
+    accounts_[i].features.resize(0);
     CorrectionInputs::Records step = inputs_.records(ensemble, references[i].track);
     if (!step.complete()) {
       begin_record(references[i], references[i], records_[i]);
@@ -127,7 +132,7 @@ std::span<const StepRecord> Correction::correct(const Ensemble& ensemble) {
       step.reference = &trusted(*step.base, references[i], ensemble.record(fallback_, references[i].track), track);
     inputs_.extract(ensemble, *step.base, track.extractor, features_);
     if (bounds_.referee) track.referee.judge(*step.base, *bounds_.referee);
-    correct_record(step, track, records_[i]);
+    correct_record(step, track, records_[i], accounts_[i]);
   }
   return {records_.data(), references.size()};
 }
@@ -151,7 +156,8 @@ const StepRecord& Correction::trusted(const StepRecord& base, const StepRecord& 
   return trusted_;
 }
 
-void Correction::correct_record(const CorrectionInputs::Records& step, Track& track, StepRecord& corrected) {
+void Correction::correct_record(const CorrectionInputs::Records& step, Track& track, StepRecord& corrected,
+                                CorrectionAccount& account) {
   const StepRecord& base = *step.base;
   const StepRecord& reference = *step.reference;
   begin_record(base, reference, corrected);
@@ -170,9 +176,10 @@ void Correction::correct_record(const CorrectionInputs::Records& step, Track& tr
   const SafeDistance distance(reference.P);
   const Limited limited = limit_kappa(distance, wanted, bounds_.kappa);
   const BoundedVector& d = limited.d;
-  const double g =
-      gate_ ? gate_->weight(features_, track.extractor.intervals(), disagreement(wanted, P_c, reference.P)) : 1.0;
+  const double contradicts = gate_ ? disagreement(wanted, P_c, reference.P) : 0.0;
+  const double g = gate_ ? gate_->weight(features_, track.extractor.intervals(), contradicts) : 1.0;
   const Referee::Weights w = bounds_.referee ? track.referee.weights(*bounds_.referee) : Referee::Weights{};
+  account = {features_, g, w, track.extractor.intervals(), contradicts, limited.wanted_sigmas};
   const BoundedVector G = component_weights(g, w, reference.x.size());
 
   // Where its parts have weights of their own, a correction may become longer than it was.

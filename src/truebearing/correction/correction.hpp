@@ -21,6 +21,17 @@
 
 namespace truebearing {
 
+/// What a network was asked at a step and who stopped what it said, beside the outcome in the record: for reports.
+struct CorrectionAccount {
+  NetworkInputs features;      ///< (d); empty where it was not asked
+  double box = 0.0;            ///< g of the box gate; 1 where there is none
+  Referee::Weights referee{};  ///< w of the referee; 1 where there is none
+  Intervals intervals{};       ///< at which the base used measurements, as the gate sees them
+  double disagreement = 0.0;   ///< of the network and what was trusted, likewise; 0 where there is no gate
+  double wanted_sigmas = 0.0;  ///< how long the correction was before kappa; NaN where that has no value
+  bool asked() const { return features.size() > 0; }
+};
+
 class Correction {
  public:
   /// Binds the model to the members of an ensemble by their names. Throws InputError where a member is missing, has
@@ -33,7 +44,12 @@ class Correction {
   std::span<const StepRecord> correct(const Ensemble& ensemble);
   void reset();
 
+  /// How each of the records that correct() gave last came about. Valid until its next call.
+  std::span<const CorrectionAccount> accounts() const { return {accounts_.data(), given_}; }
+
   const CorrectionModel& model() const { return *model_; }
+  const std::shared_ptr<const CorrectionModel>& shared_model() const { return model_; }
+  const CorrectionBounds& bounds() const { return bounds_; }
 
  private:
   struct Track {
@@ -48,7 +64,8 @@ class Correction {
   Track& track_of(int id);
   const StepRecord& trusted(const StepRecord& base, const StepRecord& reference, const StepRecord* fallback,
                             Track& track);
-  void correct_record(const CorrectionInputs::Records& step, Track& track, StepRecord& corrected);
+  void correct_record(const CorrectionInputs::Records& step, Track& track, StepRecord& corrected,
+                      CorrectionAccount& account);
 
   std::shared_ptr<const CorrectionModel> model_;
   CorrectionBounds bounds_;
@@ -57,6 +74,8 @@ class Correction {
   int fallback_ = -1;  // its index in the ensemble; -1 where there is none
   std::vector<Track> tracks_;
   std::vector<StepRecord> records_;
+  std::vector<CorrectionAccount> accounts_;
+  std::size_t given_ = 0;  // of records_ and accounts_, by the last step
   // Work space of one step.
   StepRecord trusted_;
   double handed_over_ = 0.0;

@@ -11,6 +11,12 @@ std::string describe(const Network& network) {
   return fmt::format("{} units", std::get<GatedRecurrent>(network).memory());
 }
 
+InputScale input_scale(const Network& network, Eigen::Index input) {
+  const auto of = [&](const auto& p) { return InputScale{p.input_mean[input], p.input_scale[input], p.input_clip}; };
+  if (const auto* rules = std::get_if<RuleBase>(&network)) return of(rules->network.parameters());
+  return of(std::get<GatedRecurrent>(network).parameters());
+}
+
 void CorrectionModel::validate() const {
   const auto d = static_cast<Eigen::Index>(design.features.size());
   const Eigen::Index n = space ? space->size() : 0;

@@ -96,13 +96,14 @@ double SafeDistance::of(const BoundedVector& d) const {
 }
 
 Limited limit_kappa(const SafeDistance& distance, const BoundedVector& d, double kappa) {
-  const Limited nothing{BoundedVector::Zero(d.size()), 0.0, true};
+  const Limited nothing{BoundedVector::Zero(d.size()), 0.0, true, kNaN};
   if (!d.allFinite()) return nothing;
   const double distance_sigmas = distance.of(d);
-  if (kappa == kInfinity) return {d, std::isfinite(distance_sigmas) ? distance_sigmas : kNaN, false};
+  const double wanted_sigmas = std::isfinite(distance_sigmas) ? distance_sigmas : kNaN;
+  if (kappa == kInfinity) return {d, wanted_sigmas, false, wanted_sigmas};
   if (!std::isfinite(distance_sigmas)) return nothing;
-  if (distance_sigmas <= kappa) return {d, distance_sigmas, false};
-  return {d * (kappa / distance_sigmas), kappa, true};
+  if (distance_sigmas <= kappa) return {d, distance_sigmas, false, wanted_sigmas};
+  return {d * (kappa / distance_sigmas), kappa, true, wanted_sigmas};
 }
 
 BoundedVector within_kappa(const BoundedVector& x_reference, const SafeDistance& distance, const BoundedVector& d,

@@ -43,6 +43,7 @@ struct Limited {
   BoundedVector d;
   double distance_sigmas = 0.0;  ///< of the returned d
   bool limited = false;
+  double wanted_sigmas = 0.0;  ///< of what was to be limited; NaN where it has no value
 };
 
 /// d (n) scaled down to a Mahalanobis length of at most kappa under the reference's covariance; zero where its distance

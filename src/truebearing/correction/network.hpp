@@ -31,6 +31,12 @@ inline NetworkMemory first_memory(const Network& network) {
   return NetworkMemory::Zero(std::visit([](const auto& kind) { return kind.memory(); }, network));
 }
 
+/// How an input is standardised before the network sees it: clip((value - mean) / scale).
+struct InputScale {
+  double mean, scale, clip;
+};
+InputScale input_scale(const Network& network, Eigen::Index input);
+
 /// "48 rules", "48 units".
 std::string describe(const Network& network);
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <numeric>
-#include <vector>
+#include <utility>
 
 namespace truebearing {
 namespace {
@@ -49,7 +49,7 @@ std::string term_word(double u, int parity) {
   return u < -1.5 ? "VERY SMALL" : u < -0.5 ? "SMALL" : u <= 0.5 ? "MEDIUM" : u <= 1.5 ? "LARGE" : "VERY LARGE";
 }
 
-std::string rule_sentences(const CorrectionModel& model) {
+std::vector<RuleWords> rules_in_words(const CorrectionModel& model) {
   const RuleBase& rules = model.rules();
   const FuzzyNetwork::Parameters& parameters = rules.network.parameters();
   std::vector<Eigen::Index> order(static_cast<std::size_t>(rules.network.rules()));
@@ -57,8 +57,7 @@ std::string rule_sentences(const CorrectionModel& model) {
   std::stable_sort(order.begin(), order.end(),
                    [&](Eigen::Index a, Eigen::Index b) { return rules.usage[a] > rules.usage[b]; });
 
-  std::string text;
-  int number = 0;
+  std::vector<RuleWords> words;
   FuzzyNetwork::Strengths phi;
   for (const Eigen::Index rule : order) {
     std::string conditions;
@@ -71,10 +70,18 @@ std::string rule_sentences(const CorrectionModel& model) {
          parameters.centres.row(rule).transpose().array() * parameters.input_scale.array())
             .matrix();
     rules.network.strengths(centre, phi);
-    text += fmt::format("{}. IF {} THEN add {}   (usage {:.1f} %, teacher's mean {})\n", ++number, conditions,
-                        amounts(model, rules.network.output(phi)), 100.0 * rules.usage[rule],
-                        amounts(model, rules.local_mean.row(rule).transpose()));
+    words.push_back({rule, std::move(conditions), amounts(model, rules.network.output(phi)),
+                     amounts(model, rules.local_mean.row(rule).transpose()), rules.usage[rule]});
   }
+  return words;
+}
+
+std::string rule_sentences(const CorrectionModel& model) {
+  std::string text;
+  int number = 0;
+  for (const RuleWords& rule : rules_in_words(model))
+    text += fmt::format("{}. IF {} THEN add {}   (usage {:.1f} %, teacher's mean {})\n", ++number, rule.conditions,
+                        rule.adds, 100.0 * rule.usage, rule.teacher);
   return text;
 }
 

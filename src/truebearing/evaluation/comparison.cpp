@@ -21,7 +21,16 @@ struct RunOutcome {
   std::vector<RunScore> scores;  // [tracker]
   BoundAtTimes bound;            // where the options ask for them
   AngleVariances angle_bound;
+  std::vector<std::optional<CorrectionTally>> corrections;  // [tracker], where the options ask for details
 };
+
+std::vector<std::optional<CorrectionTally>> correction_tallies(const TrackerSet& trackers) {
+  std::vector<std::optional<CorrectionTally>> tallies(static_cast<std::size_t>(trackers.size()));
+  for (int i = 0; i < trackers.size(); ++i)
+    if (const Correction* correction = trackers.correction(i))
+      tallies[static_cast<std::size_t>(i)].emplace(*correction);
+  return tallies;
+}
 
 std::size_t index_of(const TrackerSet& trackers, const std::string& name) {
   for (int i = 0; i < trackers.size(); ++i)
@@ -43,6 +52,7 @@ class ComparisonTally {
                            {}});
       if (details) details_.emplace_back(scorers[i].dimension());
     }
+    if (options.details) corrections_ = correction_tallies(trackers);
     if (!options.global_minimum.empty()) global_minimum_ = index_of(trackers, options.global_minimum);
     for (const auto& [a, b] : options.pairs) {
       const std::size_t ia = index_of(trackers, a), ib = index_of(trackers, b);
@@ -56,6 +66,7 @@ class ComparisonTally {
       trackers_[i].summary.add(run.scores[i]);
       trackers_[i].metrics.add(run.scores[i]);
       if (!details_.empty()) details_[i].add(run.scores[i]);
+      if (!corrections_.empty() && corrections_[i]) corrections_[i]->add(*run.corrections[i]);
       if (global_minimum_ && *global_minimum_ != i)
         trackers_[i].global_minimum.add(run.scores[i], run.scores[*global_minimum_]);
     }
@@ -84,6 +95,10 @@ class ComparisonTally {
       add_metrics(tracker.global_minimum.metrics());
     }
     for (const DetailsTally& tally : details_) comparison.details.push_back(tally.details());
+    for (const std::optional<CorrectionTally>& tally : corrections_) {
+      comparison.corrections.emplace_back();
+      if (tally) comparison.corrections.back() = tally->details();
+    }
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
       const auto& [a, b] = options_.pairs[i];
       Comparison::Pair& pair = comparison.pairs.emplace_back(Comparison::Pair{a, b, pairs_[i].rmse.differences()});
@@ -106,7 +121,8 @@ class ComparisonTally {
   };
   const ComparisonOptions& options_;
   std::vector<OfTracker> trackers_;
-  std::vector<DetailsTally> details_;  // [tracker], or empty
+  std::vector<DetailsTally> details_;                        // [tracker], or empty
+  std::vector<std::optional<CorrectionTally>> corrections_;  // likewise
   std::optional<std::size_t> global_minimum_;
   std::vector<Pair> pairs_;
   BoundTally bound_;
@@ -150,7 +166,17 @@ class SetOfRuns {
     if (!copy) copy.emplace(trackers_.fresh());
     const Recording recording = scenario_.simulate({options_.seed, options_.role, run});
     RunOutcome outcome;
-    outcome.scores = score_recording(*copy, scorers_, recording, options_.scoring);
+    if (options_.details) {
+      outcome.corrections = correction_tallies(*copy);
+      outcome.scores = score_recording(*copy, scorers_, recording, options_.scoring, [&](std::size_t step) {
+        for (std::size_t i = 0; i < outcome.corrections.size(); ++i)
+          if (outcome.corrections[i])
+            outcome.corrections[i]->take(step, copy->records(static_cast<int>(i)),
+                                         copy->correction(static_cast<int>(i))->accounts());
+      });
+    } else {
+      outcome.scores = score_recording(*copy, scorers_, recording, options_.scoring);
+    }
     if (options_.cramer_rao)
       outcome.bound = options_.cramer_rao->variances(recording, steps_at(recording, options_.scoring.times_s));
     if (options_.angle_bound)

@@ -10,6 +10,7 @@
 #include "truebearing/evaluation/angle_bound_summary.hpp"
 #include "truebearing/evaluation/bound_summary.hpp"
 #include "truebearing/evaluation/comparison_details.hpp"
+#include "truebearing/evaluation/correction_details.hpp"
 #include "truebearing/evaluation/monte_carlo.hpp"
 #include "truebearing/evaluation/published.hpp"
 #include "truebearing/evaluation/summary.hpp"
@@ -43,6 +44,8 @@ struct Comparison {
   std::vector<std::string> phases;  ///< names of the phases that the scenario tells apart
   std::vector<TrackerSummary> trackers;
   std::vector<TrackerDetails> details;  ///< [tracker], over all sets; empty where the options do not ask for them
+  /// [tracker]; nothing of what is no correction, empty where the options do not ask for them
+  std::vector<std::optional<CorrectionDetails>> corrections;
   struct Pair {
     std::string a, b;
     std::vector<PairedDifference> differences;  ///< of the RMSE; then of the metric families

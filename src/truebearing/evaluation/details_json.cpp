@@ -2,10 +2,10 @@
 #include "truebearing/evaluation/details_json.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdlib>
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include "truebearing/evaluation/correction_json.hpp"
+#include "truebearing/evaluation/six_digits.hpp"
 
 namespace truebearing {
 namespace {
@@ -14,17 +14,6 @@ using OrderedJson = nlohmann::ordered_json;
 
 // A picture is some 500 points wide: of a longer run every n-th step is drawn.
 constexpr std::size_t kMostDrawnSteps = 500;
-
-OrderedJson six_digits(double value) {
-  if (!std::isfinite(value)) return nullptr;
-  return std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr);
-}
-
-OrderedJson six_digits(const std::vector<double>& values, std::size_t every = 1) {
-  OrderedJson array = OrderedJson::array();
-  for (std::size_t i = 0; i < values.size(); i += every) array.push_back(six_digits(values[i]));
-  return array;
-}
 
 // Times are not rounded: those of a log may be seconds of an epoch.
 OrderedJson times_json(const std::vector<double>& values, std::size_t every) {
@@ -94,6 +83,14 @@ void add_details(const Comparison& comparison, const std::vector<RunPicture>& pi
                                                     {"nees_low", six_digits(details.nees_low)},
                                                     {"nees_high", six_digits(details.nees_high)}};
   }
+  for (std::size_t i = 0; i < comparison.corrections.size(); ++i)
+    if (const std::optional<CorrectionDetails>& correction = comparison.corrections[i])
+      results["trackers"][comparison.trackers[i].name]["details"]["correction"] = correction_json(*correction);
+  for (const auto& [name, set] : comparison.sets)
+    for (std::size_t i = 0; i < set.corrections.size(); ++i)
+      if (const std::optional<CorrectionDetails>& correction = set.corrections[i])
+        results["sets"][name]["trackers"][set.trackers[i].name]["details"]["correction"] =
+            correction_steps_json(*correction);
   for (const RunPicture& picture : pictures) results["pictures"].push_back(picture_json(picture));
 }
 

@@ -109,7 +109,8 @@ void check_targets(const Recording& recording, const ScoringRule& rule) {
 }  // namespace
 
 std::vector<RunScore> score_recording(TrackerSet& trackers, const std::vector<Scorer>& scorers,
-                                      const Recording& recording, const ScoringRule& rule) {
+                                      const Recording& recording, const ScoringRule& rule,
+                                      const std::function<void(std::size_t step)>& scored) {
   check_targets(recording, rule);
   std::vector<RunScorer> runs;
   for (const Scorer& scorer : scorers) runs.emplace_back(scorer, recording, rule);
@@ -119,6 +120,7 @@ std::vector<RunScore> score_recording(TrackerSet& trackers, const std::vector<Sc
     trackers.step(recording.measurements[step]);
     if (static_cast<int>(step) + 1 < rule.from_step) continue;
     for (std::size_t i = 0; i < runs.size(); ++i) runs[i].take(step, trackers.records(static_cast<int>(i)));
+    if (scored) scored(step);
   }
   std::vector<RunScore> scores;
   for (std::size_t i = 0; i < runs.size(); ++i) scores.push_back(runs[i].finish(trackers.events(static_cast<int>(i))));

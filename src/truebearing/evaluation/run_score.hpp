@@ -4,6 +4,7 @@
 // matter.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -59,8 +60,10 @@ struct ScoringRule {
 };
 
 /// Runs the trackers over a recording with the truth of one target or several and scores each. A record is scored
-/// against the target of its track (target_record.hpp), or the one it is assigned to. The set is reset first.
+/// against the target of its track (target_record.hpp), or the one it is assigned to. The set is reset first. scored:
+/// called after each scored step, while the set has its records.
 std::vector<RunScore> score_recording(TrackerSet& trackers, const std::vector<Scorer>& scorers,
-                                      const Recording& recording, const ScoringRule& rule);
+                                      const Recording& recording, const ScoringRule& rule,
+                                      const std::function<void(std::size_t step)>& scored = {});
 
 }  // namespace truebearing

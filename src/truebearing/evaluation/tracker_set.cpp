@@ -31,6 +31,11 @@ void TrackerSet::step(const Measurement& measurement) {
                                          : corrections_[static_cast<std::size_t>(entry.correction)].correct(ensemble_);
 }
 
+const Correction* TrackerSet::correction(int entry) const {
+  const int place = at(entry).correction;
+  return place < 0 ? nullptr : &corrections_[static_cast<std::size_t>(place)];
+}
+
 TrackerCounts TrackerSet::counts(int entry) const {
   return ensemble_.tracker(at(entry).member).counts();
 }

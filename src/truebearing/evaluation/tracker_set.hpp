@@ -28,6 +28,8 @@ class TrackerSet {
   void step(const Measurement& measurement);
   /// The records of the last step. Valid until the next step.
   std::span<const StepRecord> records(int entry) const { return at(entry).records; }
+  /// The correction of that entry, with its accounts of the last step; nullptr of what is none.
+  const Correction* correction(int entry) const;
   TrackerCounts counts(int entry) const;
   /// What it noticed since reset(): a correction notices what its base does.
   std::span<const TrackEvent> events(int entry) const;

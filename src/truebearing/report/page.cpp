@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <fmt/format.h>
 
+#include "truebearing/report/correction_plots.hpp"
+#include "truebearing/report/correction_tables.hpp"
 #include "truebearing/report/markup.hpp"
 #include "truebearing/report/page_parts.hpp"
 #include "truebearing/report/plot.hpp"
@@ -32,6 +34,25 @@ std::string figures_sections(const ResultFigures& figures, const std::string& id
          section("Run by run", run_plots(figures, id));
 }
 
+// What each correction did. timed: its steps are those of one set. open: the features of the first one stand unfolded.
+std::string correction_section(const ResultFigures& figures, const std::string& id, bool timed, bool open) {
+  std::string text;
+  for (std::size_t i = 0; i < figures.trackers.size(); ++i) {
+    const ResultTracker& tracker = figures.trackers[i];
+    if (!tracker.correction) continue;
+    const ResultCorrection& correction = *tracker.correction;
+    std::vector<Plot> plots = timed ? correction_time_plots(figures, i, id) : std::vector<Plot>{};
+    for (Plot& plot : rule_plots(figures, i, id)) plots.push_back(std::move(plot));
+    const std::string features = feature_table(correction) + figures_markup(feature_plots(figures, i, id));
+    const bool unfolded = open && text.empty();
+    text +=
+        fmt::format("<h3>{}</h3>\n", escaped(tracker.name)) + correction_sentence(correction) + figures_markup(plots);
+    text += folded(fmt::format("The {} rules of {}", correction.rules.size(), tracker.name), rule_table(correction));
+    text += unfolded ? features : folded(fmt::format("The features of {}", tracker.name), features);
+  }
+  return text.empty() ? "" : "<h2>What the corrections did</h2>\n" + text;
+}
+
 std::string results_section(const Results& results, const std::string& id, bool alone) {
   std::string text = alone ? fmt::format("<h1>{}</h1>\n", escaped(results.study))
                            : fmt::format("<h1>{}: {}</h1>\n", escaped(results.file), escaped(results.study));
@@ -45,11 +66,13 @@ std::string results_section(const Results& results, const std::string& id, bool 
   // Steps of several sets do not lie at the same times.
   text += results.sets.empty() ? figures_sections(results.all, id) : section("Run by run", run_plots(results.all, id));
   text += section("Runs as they happened", picture_plots(results, id));
+  text += correction_section(results.all, id, results.sets.empty(), true);
   for (std::size_t i = 0; i < results.sets.size(); ++i) {
     const Results::Set& set = results.sets[i];
     text +=
         fmt::format("<h2>{}</h2>\n", escaped(set.name)) + tracker_table(set.figures) + paired_table(set.figures, true);
     text += figures_sections(set.figures, fmt::format("{}set{}_", id, i + 1));
+    text += correction_section(set.figures, fmt::format("{}set{}_", id, i + 1), true, false);
   }
   return text;
 }
@@ -101,6 +124,7 @@ std::vector<PlotFile> plot_files(const std::vector<Results>& all) {
       const std::string id = fmt::format("{}set{}_", id_of(all, i), set + 1);
       add(all[i].study, time_plots(all[i].sets[set].figures, id));
       add(all[i].study, metric_plots(all[i].sets[set].figures, id));
+      add(all[i].study, correction_plots(all[i].sets[set].figures, id));
     }
   }
   return files;

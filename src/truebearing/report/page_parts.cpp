@@ -36,11 +36,15 @@ std::string html_page(const std::string& title, const std::string& body) {
   return page + "</body>\n</html>\n";
 }
 
-std::string section(const std::string& title, const std::vector<Plot>& plots) {
+std::string figures_markup(const std::vector<Plot>& plots) {
   if (plots.empty()) return {};
-  std::string text = fmt::format("<h2>{}</h2>\n<div class=\"plots\">\n", escaped(title));
+  std::string text = "<div class=\"plots\">\n";
   for (const Plot& plot : plots) text += figure_of(plot);
   return text + "</div>\n";
+}
+
+std::string section(const std::string& title, const std::vector<Plot>& plots) {
+  return plots.empty() ? "" : fmt::format("<h2>{}</h2>\n{}", escaped(title), figures_markup(plots));
 }
 
 std::string folded(const std::string& title, const std::string& markup) {

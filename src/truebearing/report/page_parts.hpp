@@ -13,7 +13,10 @@ namespace truebearing {
 /// times (player.hpp), and nothing else.
 std::string html_page(const std::string& title, const std::string& body);
 
-/// Plots under a heading, each with its sentence and its numbers; empty where there are none.
+/// Plots, each with its sentence and its numbers; empty where there are none.
+std::string figures_markup(const std::vector<Plot>& plots);
+
+/// The same under a heading.
 std::string section(const std::string& title, const std::vector<Plot>& plots);
 
 /// Markup that unfolds; empty where there is none.

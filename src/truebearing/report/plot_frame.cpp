@@ -79,6 +79,7 @@ Axis axis_of(Extent extent, bool logarithmic, bool from_zero, int about) {
     const double margin = std::pow(extent.high / extent.low, 0.03);
     return logarithmic_axis(extent.low / margin, extent.high * margin);
   }
+  if (from_zero && extent.low == 0.0 && extent.high == 0.0) extent.high = 1.0;
   if (from_zero && extent.low > 0.0 && extent.low < 0.5 * extent.high) extent.low = 0.0;
   return linear_axis(extent.low, extent.high, about);
 }

@@ -43,9 +43,73 @@ void read_series(const ResultReader& json, ResultTracker& tracker) {
   for (const auto& [name, values] : series.at("rmse").entries()) quantity_of(tracker, name).series = values.numbers();
 }
 
+ResultCorrection::Feature read_feature(const ResultReader& json) {
+  ResultCorrection::Feature feature;
+  feature.name = json.at("name").text();
+  feature.mean = json.at("mean").number();
+  feature.scale = json.at("scale").number();
+  feature.clip = json.at("clip").number();
+  feature.low = json.at("low").number();
+  feature.high = json.at("high").number();
+  const ResultReader seen = json.at("seen");
+  feature.seen_mean = seen.at("mean").number();
+  feature.seen_deviation = seen.at("deviation").number();
+  feature.least = seen.at("least").number();
+  feature.greatest = seen.at("greatest").number();
+  feature.outside = seen.at("outside").number();
+  feature.counted = seen.at("counted").numbers();
+  return feature;
+}
+
+ResultCorrection::Rule read_rule(const ResultReader& json, std::size_t features) {
+  ResultCorrection::Rule rule;
+  rule.conditions = json.at("if").text();
+  rule.adds = json.at("add").text();
+  rule.taught = json.at("taught").text();
+  rule.usage = json.at("usage").number();
+  rule.fired = json.at("fired").number();
+  rule.strongest = json.at("strongest").number();
+  rule.centre = json.at("centre").numbers();
+  rule.width = json.at("width").numbers();
+  if (rule.centre.size() != features || rule.width.size() != features)
+    throw json.error("has terms that are not one per feature");
+  return rule;
+}
+
+ResultCorrection read_correction(const ResultReader& json) {
+  ResultCorrection correction;
+  correction.network = json.text_or_none("network");
+  correction.size = json.text_or_none("size");
+  correction.base = json.text_or_none("base");
+  correction.reference = json.text_or_none("reference");
+  correction.bounds = json.text_or_none("bounds");
+  correction.kappa = json.number_or_nan("kappa");
+  correction.steps = json.at("steps").number();
+  correction.asked = json.at("asked").number();
+  correction.outside_intervals = json.at("outside_intervals").number();
+  correction.outside_disagreement = json.at("outside_disagreement").number();
+  const ResultReader by_step = json.at("by_step");
+  correction.gate = by_step.at("gate").numbers();
+  correction.box = by_step.at("box").numbers();
+  correction.referee = by_step.at("referee").numbers();
+  correction.limited = by_step.at("limited").numbers();
+  correction.handed_over = by_step.at("handed_over").numbers();
+  correction.wanted_sigmas = by_step.at("wanted_sigmas").numbers();
+  correction.moved_sigmas = by_step.at("moved_sigmas").numbers();
+  if (json.has("features"))
+    for (const ResultReader& feature : json.at("features").items())
+      correction.features.push_back(read_feature(feature));
+  if (json.has("rules"))
+    for (const ResultReader& rule : json.at("rules").items())
+      correction.rules.push_back(read_rule(rule, correction.features.size()));
+  return correction;
+}
+
 void read_details(const ResultReader& json, ResultTracker& tracker) {
   if (!json.has("details")) return;
   const ResultReader details = json.at("details");
+  if (details.has("correction")) tracker.correction = read_correction(details.at("correction"));
+  if (!details.has("run_rmse")) return;  // of one set, whose figures are all that is kept of it
   for (const auto& [name, values] : details.at("run_rmse").entries())
     quantity_of(tracker, name).run_rmse = values.numbers();
   for (const auto& [name, values] : details.at("series_se").entries())

@@ -26,6 +26,29 @@ struct ResultQuantity {
   std::vector<double> run_rmse;           ///< [run]
 };
 
+/// What a correction did: who held it back, which rules fired, what its features were.
+struct ResultCorrection {
+  std::string network, size, base, reference, bounds;  ///< empty where only its steps are told
+  double kappa = kNaN, steps = kNaN, asked = kNaN, outside_intervals = kNaN, outside_disagreement = kNaN;
+  /// [step], shares and lengths in standard deviations of what is trusted, means over runs.
+  std::vector<double> gate, box, referee, limited, handed_over, wanted_sigmas, moved_sigmas;
+
+  struct Feature {
+    std::string name;
+    double mean = kNaN, scale = kNaN, clip = kNaN, low = kNaN, high = kNaN;  ///< as the network was taught
+    double seen_mean = kNaN, seen_deviation = kNaN, least = kNaN, greatest = kNaN, outside = kNaN;
+    std::vector<double> counted;  ///< [bin] over mean -+ clip scale
+  };
+  std::vector<Feature> features;
+
+  struct Rule {
+    std::string conditions, adds, taught;
+    double usage = kNaN, fired = kNaN, strongest = kNaN;
+    std::vector<double> centre, width;  ///< [feature], in its units
+  };
+  std::vector<Rule> rules;  ///< the most used in training first
+};
+
 struct ResultTracker {
   std::string name;
   bool is_bound = false;
@@ -35,6 +58,7 @@ struct ResultTracker {
   std::vector<double> time_s;                        ///< of the series
   std::vector<double> nees_of, nees_low, nees_high;  ///< [step]: mean, and where 95 % of such means lie
   std::vector<ResultMetric> metrics;
+  std::optional<ResultCorrection> correction;
 
   const ResultQuantity* quantity(std::string_view quantity_name) const;
 };

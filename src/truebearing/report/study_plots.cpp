@@ -8,6 +8,7 @@
 
 #include "truebearing/evaluation/metric.hpp"
 #include "truebearing/report/axis.hpp"
+#include "truebearing/report/correction_plots.hpp"
 #include "truebearing/report/markup.hpp"
 #include "truebearing/report/plot_clock.hpp"
 
@@ -277,6 +278,7 @@ std::vector<Plot> study_plots(const Results& results, const std::string& id) {
   add(metric_plots(results.all, id));
   add(run_plots(results.all, id));
   add(picture_plots(results, id));
+  add(correction_plots(results.all, id));
   return plots;
 }
 

@@ -25,6 +25,7 @@
 #include "truebearing/recording/geographic_track.hpp"
 #include "truebearing/recording/recording_csv.hpp"
 #include "truebearing/recording/snapshot_log.hpp"
+#include "truebearing/report/log_page.hpp"
 #include "truebearing/study/log_fit.hpp"
 #include "truebearing/study/measured_check.hpp"
 #include "truebearing/study/study.hpp"
@@ -43,8 +44,8 @@ struct TrackArguments {
   LogArguments reading;
   ReportArguments report;
 
-  /// Scores are asked for, which takes a log with truth.
-  bool wants_scores() const { return !json.empty() || report.wanted(); }
+  /// What is for programs or for a page: scores where the log has truth, else what can be said without.
+  bool wants_results() const { return !json.empty() || report.wanted(); }
   bool only_text_for_programs() const {
     return is_standard_output(output) || is_standard_output(json) || is_standard_output(events) ||
            is_standard_output(report.page);
@@ -155,6 +156,9 @@ class TrackRun {
   int number_ = 0;
 };
 
+// Logs that are kept, each with the number that tells its tracks from others'.
+using KeptLogs = std::vector<std::pair<int, Recording>>;
+
 // The log's own measurements as the runs of a comparison, one per track.
 class LogScenario final : public Scenario {
  public:
@@ -226,48 +230,62 @@ void say_epoch(const TrackArguments& options, double epoch_s) {
                     options.log, epoch_s));
 }
 
-// tracks: what is to be scored; empty where nothing is.
+// What can be said of logs without truth. numbers: of their tracks.
+void write_log_results(const Study& study, const TrackArguments& options, const TrackRun& run,
+                       const Recording::Counts& rows, const KeptLogs& logs) {
+  LogFollower follower(run.trackers());
+  for (const auto& [number, recording] : logs) follower.follow(recording, number, run.contents().epoch_s);
+  TrackedLog tracked{study.name(), options.log, run.contents().measurements, rows, {}, follower.take()};
+  for (const Followed& followed : run.all())
+    tracked.why_none.push_back(followed.records > 0 ? "" : why_no_track(study, followed.name, run.contents()));
+  const std::string json = log_json(tracked, run.all());
+  if (!options.json.empty()) write_output(options.json, json);
+  if (!options.report.page.empty()) write_output(options.report.page, log_page(json, options.log));
+  if (!options.report.svg.empty()) write_plots(options.report.svg, log_plot_files(json, options.log));
+}
+
+// logs: what is to be scored, or told of where it has no truth; empty where neither is wanted.
 void finish(const Study& study, const TrackArguments& options, TrackRun& run, const Recording::Counts& rows,
-            std::vector<Recording> tracks) {
+            KeptLogs logs) {
   const bool for_people = !options.only_text_for_programs();
   if (for_people) report(study, options, run, rows);
   for (const std::string& line : consistency_warnings(run.all())) say("truebearing: " + line);
+  std::vector<Recording> tracks;
+  for (auto& [number, recording] : logs)
+    if (recording.truth_space) tracks.push_back(std::move(recording));
   std::optional<Scored> scored;
   if (!tracks.empty()) scored = score(study, options, run.trackers(), tracks, run.contents().epoch_s);
   run.finish();
-  if (!scored) return;
+  if (!scored) {
+    if (options.wants_results()) write_log_results(study, options, run, rows, logs);
+    return;
+  }
   if (for_people) fmt::print("\n{}", comparison_table(scored->comparison));
-  if (!options.wants_scores()) return;
+  if (!options.wants_results()) return;
   const std::string json = comparison_json(scored->comparison, scored->pictures);
   if (!options.json.empty()) write_output(options.json, json);
   if (options.report.wanted()) write_report(options.report, {parse_results(json, options.log)});
 }
 
-InputError no_truth(const std::string& log) {
-  return {log, "has no truth to score against", "a log with truth, or neither --json nor --report"};
-}
-
 void track_step_log(const Study& study, const StepLogScenario& logs, const TrackArguments& options) {
   std::vector<RecordedTrack> read = logs.read(options.log);
-  if (options.wants_scores() && !read.front().recording.truth_space) throw no_truth(options.log);
   const std::vector<Measurement>& first = read.front().recording.measurements;
   TrackRun run(study, options, static_cast<int>(first.front().z.size()));
   Recording::Counts rows;
-  std::vector<Recording> tracks;
+  KeptLogs logs_kept;
   for (auto& [number, recording] : read) {
     if (read.size() > 1 || number != 0) run.begin_track(number);
     for (const Measurement& measurement : recording.measurements) run.step(measurement);
     run.end_track(recording.counts);
     rows.missing += recording.counts.missing;
-    if (recording.truth_space) tracks.push_back(std::move(recording));
+    if (recording.truth_space || options.wants_results()) logs_kept.emplace_back(number, std::move(recording));
   }
-  finish(study, options, run, rows, std::move(tracks));
+  finish(study, options, run, rows, std::move(logs_kept));
 }
 
 void track_snapshots(const Study& study, const TrackArguments& options) {
   Recording recording = read_snapshot_log(options.log);
   check_measured(recording.measured, study.scenario(), options.log);
-  if (options.wants_scores() && !recording.truth_space) throw no_truth(options.log);
   const LineArray array = array_of(recording);
   check_measured(study, Measured::snapshots(array.sensors), options.log);
   TrackRun run(study, options, static_cast<int>(recording.measured.size()));
@@ -278,18 +296,17 @@ void track_snapshots(const Study& study, const TrackArguments& options) {
   const Recording::Counts rows = recording.counts;
   run.end_track(rows);
   print_note(options.log, array.note());
-  std::vector<Recording> tracks;
-  if (recording.truth_space) tracks.push_back(std::move(recording));
-  finish(study, options, run, rows, std::move(tracks));
+  KeptLogs logs;
+  if (recording.truth_space || options.wants_results()) logs.emplace_back(0, std::move(recording));
+  finish(study, options, run, rows, std::move(logs));
 }
 
 void track_rows(const Study& study, const TrackArguments& options) {
   const RecordingOptions reading = options.reading.over(study.recording_options());
   MeasurementLog reader(with_names(CsvReader(std::filesystem::path(options.log)), reading), reading);
   check_measured(reader.measured(), study.scenario(), options.log);
-  if (options.wants_scores() && !reader.truth_space()) throw no_truth(options.log);
   // Whoever is only given the records needs no scores, and the log has no end that could be waited for.
-  const bool scores = reader.truth_space() && (!options.only_text_for_programs() || options.wants_scores());
+  const bool keeps = options.wants_results() || (reader.truth_space() && !options.only_text_for_programs());
   TrackRun run(study, options, static_cast<int>(reader.measured().size()));
   Recording recording;
   for (bool first = true; reader.next(); first = false) {
@@ -299,14 +316,17 @@ void track_rows(const Study& study, const TrackArguments& options) {
       run.begin_at(epoch_s);
     }
     run.step(reader.measurement());
-    if (scores) reader.append_to(recording);
+    if (keeps) reader.append_to(recording);
     if (reader.may_wait()) run.flush();
   }
   run.end_track(reader.counts());
   print_note(options.log, reader.findings().note());
-  std::vector<Recording> tracks;
-  if (scores) reader.complete(tracks.emplace_back(std::move(recording)));
-  finish(study, options, run, reader.counts(), std::move(tracks));
+  KeptLogs logs;
+  if (keeps) {
+    reader.complete(recording);
+    logs.emplace_back(0, std::move(recording));
+  }
+  finish(study, options, run, reader.counts(), std::move(logs));
 }
 
 void track(const TrackArguments& options) {
@@ -336,7 +356,9 @@ void add_track(const Subcommands& all) {
                 "- is standard input")
       .required();
   command.argument("-o,--output", options->output, "write the trackers' step records as CSV; - is standard output");
-  command.argument("--json", options->json, "write the scores as JSON, where the log has truth; - is standard output");
+  command.argument(
+      "--json", options->json,
+      "write the scores as JSON, or where the log has no truth what can be said without; - is standard output");
   command.argument("--events", options->events,
                    "write what the trackers noticed (turns, a source's jumps, ...) as CSV; - is standard output");
   add_report_arguments(command, options->report);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `truebearing track` says of the trackers that it ran, for people.
+// What `truebearing track` says of the trackers that it ran, for people; and of a log without truth, for programs.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "truebearing/evaluation/innovation_consistency.hpp"
+#include "truebearing/evaluation/log_account.hpp"
 #include "truebearing/tracker/tracker.hpp"
 
 namespace truebearing {
@@ -27,5 +28,17 @@ std::vector<std::string> consistency_warnings(const std::vector<Followed>& all);
 /// The state with its standard deviations at the end, track by track.
 std::string estimate_table(const std::vector<Followed>& all);
 std::string event_table(const std::vector<Followed>& all);
+
+/// What a log was and what became of it.
+struct TrackedLog {
+  std::string study, log;
+  std::size_t measurements = 0;
+  Recording::Counts rows;
+  std::vector<std::string> why_none;  ///< [tracker]: why it began no track; empty where it did
+  LogAccount account;
+};
+
+/// As JSON: consistency, last estimates, innovations, what was not used and why, events, and the picture of the tracks.
+std::string log_json(const TrackedLog& tracked, const std::vector<Followed>& all);
 
 }  // namespace truebearing

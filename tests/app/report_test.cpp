@@ -93,10 +93,28 @@ TEST(Report, TrackAndTmaDrawTheirLogs) {
   ASSERT_EQ(tracked.status, 0) << tracked.err;
   EXPECT_EQ(read_markup(folder.read("track.html")).error, "");
   EXPECT_THAT(folder.read("track.html"), HasSubstr("id=\"run_median-title\""));
+
+  // Without its truth there is something to be said too, and the page is made of the JSON alone.
+  std::string blind;
+  for (std::size_t at = 0; at < log.size(); at = log.find('\n', at) + 1) {
+    const std::string row = log.substr(at, log.find('\n', at) - at);
+    blind += row.substr(0, row.find(',', row.find(',') + 1)) + "\n";
+  }
+  folder.write("blind.csv", blind);
+  const Outcome blinded = run(folder, "track small.toml blind.csv --report blind.html --json blind.json --svg blind");
+  ASSERT_EQ(blinded.status, 0) << blinded.err;
+  const std::string page = folder.read("blind.html");
+  EXPECT_EQ(read_markup(page).error, "");
+  EXPECT_THAT(page, HasSubstr("id=\"tracks-title\""));
+  EXPECT_EQ(count_of(page, "<figure>"), 1 + 2 * 2) << "the tracks; innovations and NIS of plain and tuned";
+  EXPECT_EQ(read_markup(folder.read("blind/log_tracks.svg")).error, "");
+  ASSERT_EQ(run(folder, "report blind.json -o again.html").status, 0);
+  EXPECT_EQ(folder.read("again.html"), replaced(page, "from blind.csv (", "from blind.json ("));
+
   const Outcome solved = run(folder, "tma bearings.csv --report tma.html --svg plots");
   ASSERT_EQ(solved.status, 0) << solved.err;
   EXPECT_EQ(read_markup(folder.read("tma.html")).error, "");
-  EXPECT_EQ(count_of(folder.read("tma.html"), "<figure>"), 2);
+  EXPECT_EQ(count_of(folder.read("tma.html"), "<figure>"), 3);
   EXPECT_EQ(read_markup(folder.read("plots/tma_plane.svg")).error, "");
 }
 

@@ -62,6 +62,57 @@ TEST(TmaPage, ShowsGeometryAndResiduals) {
   EXPECT_EQ(count_of(between(residuals, "class=\"dots s1\" d=\"", "\""), "h0"), 1) << "the outlier";
 }
 
+// Twenty bearings: the first ten err twice as much as they claim.
+TEST(TmaPage, HoldsResidualsToWhatTheyClaim) {
+  Json json = answer();
+  Json columns{{"time_s", Json::array()},
+               {"own_east_m", Json::array()},
+               {"own_north_m", Json::array()},
+               {"bearing_deg", Json::array()},
+               {"residual_sigmas", Json::array()}};
+  for (int i = 0; i < 20; ++i) {
+    columns["time_s"].push_back(i);
+    columns["own_east_m"].push_back(10.0 * i);
+    columns["own_north_m"].push_back(0.0);
+    columns["bearing_deg"].push_back(8.0);
+    columns["residual_sigmas"].push_back((i % 2 == 0 ? 1.0 : -1.0) * (i < 10 ? 2.0 : 1.0));
+  }
+  json["details"] = columns;
+  json["residuals"] = {{"chi_square", 50.0}, {"degrees_of_freedom", 16}, {"lag_one_sigmas", -4.4}};
+  const std::vector<Plot> plots = tma_plots(json.dump(), "a.json");
+  ASSERT_EQ(plots.size(), 3u);
+  EXPECT_EQ(plots[2].series.back().y, (std::vector<double>{4.0, 4.0, 1.0, 1.0})) << "means over five";
+  EXPECT_EQ(plots[2].summary, "2 of 4 means are inside.");
+  const std::string page = tma_page(json.dump(), "a.json");
+  EXPECT_THAT(page, HasSubstr("<td>3.125</td><td>0.4317 to 1.803</td><td>too large</td>"));
+  EXPECT_THAT(page, HasSubstr("<td>−4.4</td><td>−1.96 to 1.96</td><td>not white</td>"));
+}
+
+TEST(TmaPage, SaysWhatWasRejectedAndWhatHappened) {
+  Json json = answer();
+  json["missing"] = 2;
+  json["outliers"]["bearings"] = Json::array({{{"time_s", 50.0}, {"line", 7}, {"sigmas", 6.25}, {"or_line", 8}}});
+  json["manoeuvre"] = {{"detected", true},
+                       {"time_s", 60.0},
+                       {"earliest_s", 55.0},
+                       {"latest_s", 65.0},
+                       {"stretches", Json::array({{{"from_s", 0.0}, {"to_s", 60.0}, {"estimate", motion(1.0)}},
+                                                  {{"from_s", 60.0}, {"to_s", 100.0}, {"estimate", nullptr}}})}};
+  const std::string page = tma_page(json.dump(), "a.json");
+  EXPECT_EQ(read_markup(page).error, "");
+  EXPECT_THAT(page,
+              HasSubstr("<td>7</td><td>6.25 standard deviations off what the others say; or line 8 in its stead</td>"));
+  EXPECT_THAT(page, HasSubstr("2 rows hold no bearing."));
+  EXPECT_THAT(page, HasSubstr("<td>between 55 and 65 s</td>"));
+  EXPECT_THAT(page, HasSubstr("<td>5000 m, course 90 deg, 5 m/s</td>"));
+  EXPECT_THAT(page, HasSubstr("<td>range not determined</td>"));
+  json["outliers"]["bearings"] = Json::array();
+  json["manoeuvre"]["detected"] = false;
+  const std::string quiet = tma_page(json.dump(), "a.json");
+  EXPECT_THAT(quiet, HasSubstr("No bearing stands out from the others."));
+  EXPECT_EQ(count_of(quiet, "What happened"), 0);
+}
+
 TEST(TmaPage, DrawsWhatIsPossibleWhereTheRangeIsOpen) {
   Json open = answer();
   for (auto& [key, value] : open["estimate"].items()) value = nullptr;

@@ -40,9 +40,13 @@ OrderedJson track_json(const DrawnTrack& track, std::size_t every) {
   return json;
 }
 
-OrderedJson picture_json(const RunPicture& picture) {
+}  // namespace
+
+nlohmann::ordered_json picture_json(const RunPicture& picture) {
   std::size_t steps = 0;
   for (const DrawnLine& truth : picture.truth) steps = std::max(steps, truth.time_s.size());
+  for (const DrawnTrack& track : picture.tracks) steps = std::max(steps, track.line.time_s.size());
+  steps = std::max({steps, picture.measured.time_s.size(), picture.own_ship.time_s.size()});
   const std::size_t every = steps / (kMostDrawnSteps + 1) + 1;
   OrderedJson json{{"which", picture.which}, {"run", picture.run}};
   if (!picture.set.empty()) json["set"] = picture.set;
@@ -65,8 +69,6 @@ OrderedJson picture_json(const RunPicture& picture) {
   for (const DrawnTrack& track : picture.tracks) json["tracks"].push_back(track_json(track, every));
   return json;
 }
-
-}  // namespace
 
 void add_details(const Comparison& comparison, const std::vector<RunPicture>& pictures, OrderedJson& results) {
   for (std::size_t i = 0; i < comparison.details.size(); ++i) {

@@ -10,6 +10,9 @@
 
 namespace truebearing {
 
+/// Of a longer run every n-th step.
+nlohmann::ordered_json picture_json(const RunPicture& picture);
+
 /// Adds `details` to each tracker of the results, and `pictures`; nothing where there are none. Numbers are written to
 /// six digits: they are looked at.
 void add_details(const Comparison& comparison, const std::vector<RunPicture>& pictures,

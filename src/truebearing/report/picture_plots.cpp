@@ -7,6 +7,8 @@
 #include "truebearing/evaluation/metric.hpp"
 #include "truebearing/report/axis.hpp"
 #include "truebearing/report/markup.hpp"
+#include "truebearing/report/picture_plots.hpp"
+#include "truebearing/report/plot_clock.hpp"
 #include "truebearing/report/study_plots.hpp"
 
 namespace truebearing {
@@ -72,26 +74,56 @@ void add_uncertainty(const ResultTrack& track, const Look& look, Plot& plot) {
   plot.series.push_back(std::move(ellipses));
 }
 
-Plot picture_plot(const Results& results, const ResultPicture& picture, const std::string& id) {
+}  // namespace
+
+ResultPicture on_clock(ResultPicture picture) {
+  const auto each_line = [&](const auto& take) {
+    for (ResultLine& truth : picture.truth) take(truth);
+    take(picture.measured);
+    take(picture.own_ship);
+    for (ResultTrack& track : picture.tracks) take(track.line);
+  };
+  double first = kInfinity, last = -kInfinity;
+  each_line([&](const ResultLine& line) {
+    for (const double time_s : line.time_s) {
+      first = std::min(first, time_s);
+      last = std::max(last, time_s);
+    }
+  });
+  if (!(first < last)) return picture;
+  const PlotClock clock({first, last});
+  picture.clock_zero_s = clock.zero_s;
+  picture.clock_label = clock.label;
+  each_line([&](ResultLine& line) { line.time_s = clock.from(std::move(line.time_s)); });
+  return picture;
+}
+
+Plot drawn_picture(const ResultPicture& picture, const std::function<Look(const std::string&)>& look_of_tracker) {
   Plot plot;
-  plot.id = fmt::format("{}run_{}", id, picture.which);
-  plot.title = fmt::format("{} run of {}", capitalised(picture.which), picture.judged_by);
   plot.equal = picture.in_plane;
-  plot.x_label = picture.in_plane ? "East (m)" : "time (s)";
+  plot.x_label = picture.in_plane ? "East (m)" : picture.clock_label;
   plot.y_label = picture.in_plane ? "North (m)" : axis_name(picture.component);
   add_own_ship(picture, plot);
   if (!picture.measured.y.empty())
     plot.series.push_back(drawn("measured", {"measured"}, Shape::dots, picture.measured));
-  for (const ResultTrack& track : picture.tracks) add_uncertainty(track, look_of(results.all, track.tracker), plot);
+  for (const ResultTrack& track : picture.tracks) add_uncertainty(track, look_of_tracker(track.tracker), plot);
   for (std::size_t i = 0; i < picture.truth.size(); ++i)
     plot.series.push_back(drawn(i == 0 ? "truth" : "", {"truth"}, Shape::line, picture.truth[i]));
   std::vector<std::string> named;
   for (const ResultTrack& track : picture.tracks) {
     const bool again = std::find(named.begin(), named.end(), track.tracker) != named.end();
-    plot.series.push_back(
-        drawn(again ? "" : track.tracker, look_of(results.all, track.tracker), Shape::line, track.line));
+    plot.series.push_back(drawn(again ? "" : track.tracker, look_of_tracker(track.tracker), Shape::line, track.line));
     named.push_back(track.tracker);
   }
+  return plot;
+}
+
+namespace {
+
+Plot picture_plot(const Results& results, const ResultPicture& picture, const std::string& id) {
+  Plot plot = drawn_picture(picture, [&](const std::string& name) { return look_of(results.all, name); });
+  plot.id = fmt::format("{}run_{}", id, picture.which);
+  plot.title = fmt::format("{} run of {}", capitalised(picture.which), picture.judged_by);
   const std::string of_set = picture.set.empty() ? "" : fmt::format(" of {}", picture.set);
   plot.caption = fmt::format(
       "Run {:.0f}{}, in which the {} RMSE of {} is {} {}. {} are two of the tracker's own standard deviations.{}",
@@ -120,7 +152,7 @@ Plot picture_error_plot(const Results& results, const ResultPicture& picture, co
   Plot plot;
   plot.id = fmt::format("{}run_{}_error", id, picture.which);
   plot.title = fmt::format("Its error against time: {} run", picture.which);
-  plot.x_label = "time (s)";
+  plot.x_label = picture.clock_label;
   plot.y_label = picture.in_plane
                      ? "distance from the truth (m)"
                      : fmt::format("{} − truth ({})", name_of(picture.component), unit_of(picture.component));
@@ -144,9 +176,11 @@ Plot picture_error_plot(const Results& results, const ResultPicture& picture, co
 
 std::vector<Plot> picture_plots(const Results& results, const std::string& id) {
   std::vector<Plot> plots;
-  for (const ResultPicture& picture : results.pictures)
+  for (const ResultPicture& timed : results.pictures) {
+    const ResultPicture picture = on_clock(timed);
     for (Plot plot : {picture_plot(results, picture, id), picture_error_plot(results, picture, id)})
       if (!plot.empty()) plots.push_back(std::move(plot));
+  }
   return plots;
 }
 

@@ -11,7 +11,7 @@ namespace truebearing {
 /// Who or what a mark stands for: colours and dashes are the style sheet's (style.hpp).
 struct Look {
   std::string name;  ///< a class: "s0" ... "s7" of trackers, "truth", "bound", "measured", "own", "ideal",
-                     ///< "other", "seen"
+                     ///< "other", "seen", "event"
 };
 /// Of the i-th tracker of a study.
 Look tracker_look(std::size_t i);

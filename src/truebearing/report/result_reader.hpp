@@ -53,6 +53,10 @@ class ResultReader {
     if (!json_.is_number()) throw error("is no number");
     return json_.get<double>();
   }
+  bool truth() const {
+    if (!json_.is_boolean()) throw error("is neither true nor false");
+    return json_.get<bool>();
+  }
   std::string text() const {
     if (!json_.is_string()) throw error("is no text");
     return json_.get<std::string>();

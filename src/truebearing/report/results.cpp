@@ -205,6 +205,8 @@ ResultTrack read_track(const ResultReader& json) {
   return track;
 }
 
+}  // namespace
+
 ResultPicture read_picture(const ResultReader& json) {
   ResultPicture picture;
   picture.which = json.at("which").text();
@@ -225,8 +227,6 @@ ResultPicture read_picture(const ResultReader& json) {
   for (const ResultReader& track : json.at("tracks").items()) picture.tracks.push_back(read_track(track));
   return picture;
 }
-
-}  // namespace
 
 const ResultQuantity* ResultTracker::quantity(std::string_view quantity_name) const {
   for (const ResultQuantity& quantity : quantities)

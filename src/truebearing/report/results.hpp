@@ -93,6 +93,8 @@ struct ResultPicture {
   std::string which, set, judged_by, quantity, component;
   double run = kNaN, rmse = kNaN, every = 1.0;
   bool in_plane = false;
+  double clock_zero_s = 0.0;  ///< what was taken off its times (on_clock()), and the label of their axis
+  std::string clock_label = "time (s)";
   std::vector<ResultLine> truth;
   ResultLine measured, own_ship;
   std::vector<double> bearing_deg;
@@ -111,6 +113,9 @@ struct Results {
   std::vector<Set> sets;
   std::vector<ResultPicture> pictures;
 };
+
+class ResultReader;
+ResultPicture read_picture(const ResultReader& json);
 
 /// Throws InputError that names the file, and the key where one is missing or of the wrong type. file: what messages and
 /// the page call it.

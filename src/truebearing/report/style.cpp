@@ -31,6 +31,7 @@ svg.plot text { fill: var(--ink); } svg.plot .tick { fill: var(--soft); font-siz
 .line.truth { stroke-width: 2.5; stroke-opacity: 0.75; } .line.bound { stroke-width: 1.5; stroke-dasharray: 6 4; }
 .other { stroke: var(--soft); fill: var(--soft); } .line.other { stroke-width: 1; stroke-opacity: 0.45; }
 .band.seen { fill: var(--measured); fill-opacity: 0.32; }
+.event { stroke: var(--ink); fill: var(--ink); } .line.event { stroke-width: 1; stroke-dasharray: 2 3; } .dots.event { stroke-width: 8; stroke-opacity: 0.8; }
 .line.ideal { stroke-width: 1; stroke-opacity: 0.7; } .line.own { stroke-width: 3; stroke-opacity: 0.5; }
 .line { fill: none; } .dots { fill: none; } .sight { fill: none; } .band { stroke: none; }
 )";
@@ -50,7 +51,7 @@ h3 { font-size: 1rem; margin: 1.2em 0 0.3em; } h1, h2, h3 { overflow-wrap: anywh
 th, td { padding: 4px 10px; text-align: right; border-bottom: 1px solid var(--grid); white-space: nowrap; }
 th:first-child, td:first-child { text-align: left; } thead th { color: var(--soft); font-weight: 600; vertical-align: bottom; }
 tbody th { font-weight: 600; } .se { color: var(--soft); } .best { background: var(--best); font-weight: 700; }
-td.prose { white-space: normal; text-align: left; min-width: 46em; } .wide + .plots { margin-top: 14px; }
+td.prose { white-space: normal; text-align: left; min-width: 46em; } .wide + .plots, .wide + .wide { margin-top: 14px; }
 .tag { font-size: 0.75rem; color: var(--soft); border: 1px solid var(--soft); border-radius: 4px; padding: 0 4px; margin-left: 6px; }
 .swatch { display: inline-block; width: 28px; height: 10px; margin-right: 8px; }
 .plots { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 480px), 1fr)); gap: 20px; align-items: start; }

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "truebearing/core/chi_square.hpp"
 #include "truebearing/io/json_file.hpp"
+#include "truebearing/report/consistency_plot.hpp"
 #include "truebearing/report/markup.hpp"
 #include "truebearing/report/page_parts.hpp"
 #include "truebearing/report/plot_clock.hpp"
@@ -108,6 +110,103 @@ Plot residual_plot(const ResultReader& json) {
   return plot;
 }
 
+// Of the bearings by themselves: one degree of freedom each.
+Plot tma_consistency_plot(const ResultReader& json) {
+  const ResultReader details = json.at("details");
+  SquaredResiduals squares{details.at("time_s").numbers(), details.at("residual_sigmas").numbers(), {}};
+  squares.freedom.assign(squares.time_s.size(), 1.0);
+  for (double& residual : squares.nis) residual *= residual;
+  Plot plot = consistency_plot(squares, "bearings");
+  plot.id = "consistency";
+  plot.title = "Do the bearings err as much as they claim?";
+  return plot;
+}
+
+std::string tma_table(std::initializer_list<const char*> names, const std::string& rows) {
+  std::string head;
+  for (const char* name : names) head += fmt::format("<th scope=\"col\">{}</th>", name);
+  return fmt::format(
+      "<div class=\"wide\" tabindex=\"0\"><table><thead><tr>{}</tr></thead><tbody>\n{}</tbody></table></div>\n", head,
+      rows);
+}
+
+// Whether one course and speed explains the bearings, by what it leaves of them.
+std::string residual_table(const ResultReader& json) {
+  if (!json.has("residuals")) return {};
+  const ResultReader residuals = json.at("residuals");
+  const auto row = [](const char* what, double value, const std::string& expected, bool good, const char* otherwise) {
+    return fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td><td>{}</td></tr>\n", what, shown(value),
+                       expected, good ? "as expected" : otherwise);
+  };
+  const double freedom = residuals.at("degrees_of_freedom").number(),
+               ratio = residuals.at("chi_square").number() / freedom;
+  if (!(freedom > 0.0) || !std::isfinite(ratio)) return {};
+  const ChiSquareMeans consistent = chi_square_means(freedom, 1.0);
+  std::string rows =
+      row("squared residuals by their degrees of freedom", ratio,
+          fmt::format("{} to {}", shown(consistent.low), shown(consistent.high)),
+          ratio >= consistent.low && ratio <= consistent.high, ratio > consistent.high ? "too large" : "too small");
+  constexpr double kLagLimit = 1.96;
+  const double lag = residuals.at("lag_one_sigmas").number();
+  if (std::isfinite(lag))
+    rows += row("correlation of successive ones (standard deviations)", lag,
+                fmt::format("{} to {}", shown(-kLagLimit), shown(kLagLimit)), std::abs(lag) <= kLagLimit, "not white");
+  return tma_table({"residuals", "value", "95 % where all is right", "so"}, rows);
+}
+
+// Bearings and frequencies that were not believed, with what speaks against them.
+std::string outlier_table(const ResultReader& json) {
+  std::string rows;
+  const ResultReader outliers = json.at("outliers");
+  for (const auto& [key, what] : {std::pair{"bearings", "bearing"}, {"frequencies", "frequency"}}) {
+    if (!outliers.has(key)) continue;
+    for (const ResultReader& one : outliers.at(key).items()) {
+      const double or_line = one.number_or_nan("or_line"), sigmas = one.number_or_nan("sigmas");
+      std::string why = std::isfinite(sigmas)
+                            ? fmt::format("{} standard deviations off what the others say", shown(sigmas, 3))
+                            : "off what the others say";
+      if (std::isfinite(or_line)) why += fmt::format("; or line {} in its stead", shown(or_line, 9));
+      rows += fmt::format("<tr><td>{}</td><th scope=\"row\">{}</th><td>{}</td><td>{}</td></tr>\n",
+                          shown(one.at("time_s").number(), 12), what, shown(one.number_or_nan("line"), 9), why);
+    }
+  }
+  const double missing = json.number_or_nan("missing");
+  const std::string note =
+      missing > 0.0 ? fmt::format("<p class=\"note\">{} no bearing.</p>\n",
+                                  missing > 1.0 ? shown(missing, 9) + " rows hold" : std::string("One row holds"))
+                    : "";
+  if (rows.empty()) return "<h2>What was rejected</h2>\n<p>No bearing stands out from the others.</p>\n" + note;
+  return "<h2>What was rejected</h2>\n" + tma_table({"time (s)", "what", "line of the log", "why"}, rows) + note;
+}
+
+std::string stretch_motion(const ResultReader& stretch) {
+  const ResultReader motion = stretch.at("estimate");
+  if (!motion.has("range_m")) return "range not determined";
+  return fmt::format("{} m, course {} deg, {} m/s", shown(motion.at("range_m").number()),
+                     shown(motion.at("course_deg").number()), shown(motion.at("speed_mps").number(), 3));
+}
+
+std::string tma_events(const ResultReader& json) {
+  std::string rows;
+  const auto row = [&](double time_s, const std::string& what, const std::string& more) {
+    rows += fmt::format("<tr><td>{}</td><th scope=\"row\">{}</th><td>{}</td></tr>\n", shown(time_s, 12), what, more);
+  };
+  if (json.has("manoeuvre") && json.at("manoeuvre").at("detected").truth() && json.at("manoeuvre").has("earliest_s")) {
+    const ResultReader manoeuvre = json.at("manoeuvre");
+    row(manoeuvre.at("time_s").number(), "the target left its course or speed",
+        fmt::format("between {} and {} s", shown(manoeuvre.at("earliest_s").number(), 12),
+                    shown(manoeuvre.at("latest_s").number(), 12)));
+    for (const ResultReader& stretch : manoeuvre.at("stretches").items())
+      row(stretch.at("from_s").number(), fmt::format("to {} s by itself", shown(stretch.at("to_s").number(), 12)),
+          stretch_motion(stretch));
+  }
+  if (json.has("source"))
+    for (const ResultReader& change : json.at("source").at("changes").items())
+      row(change.at("time_s").number(), "the source's frequency jumped",
+          fmt::format("to {} Hz", shown(change.at("frequency_hz").number(), 6)));
+  return rows.empty() ? "" : "<h2>What happened</h2>\n" + tma_table({"time (s)", "what", "more"}, rows);
+}
+
 std::string solution_table(const ResultReader& json) {
   struct Row {
     const char *key, *name, *unit;
@@ -135,7 +234,7 @@ std::string solution_table(const ResultReader& json) {
 
 std::vector<Plot> plots_of(const ResultReader& json) {
   std::vector<Plot> plots;
-  for (Plot plot : {plane_plot(json), residual_plot(json)})
+  for (Plot plot : {plane_plot(json), residual_plot(json), tma_consistency_plot(json)})
     if (!plot.empty()) plots.push_back(std::move(plot));
   return plots;
 }
@@ -157,12 +256,12 @@ std::string tma_page(std::string_view text, const std::string& file) {
       escaped(log), shown(json.at("bearings").number(), 9),
       shown(json.at("time_s").number() - json.at("from_s").number(), 5), escaped(json.at("method").text()),
       escaped(json.at("verdict").text()));
-  body += solution_table(json);
+  body += solution_table(json) + residual_table(json);
   std::string causes;
   for (const ResultReader& cause : json.at("causes").items())
     causes += fmt::format("<li>{}</li>\n", escaped(cause.at("says").text()));
   if (!causes.empty()) body += fmt::format("<h2>What the bearings look like besides</h2>\n<ul>\n{}</ul>\n", causes);
-  body += section("In the plane, and what is left", plots_of(json));
+  body += section("In the plane, and what is left", plots_of(json)) + tma_events(json) + outlier_table(json);
   return html_page(log, body);
 }
 

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "truebearing/evaluation/run_canvas.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "truebearing/core/angle.hpp"
+#include "truebearing/core/constants.hpp"
+
+namespace truebearing {
+namespace {
+
+int place_of(const std::vector<std::string>& names, const std::string& name) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  return found == names.end() ? -1 : static_cast<int>(found - names.begin());
+}
+
+}  // namespace
+
+RunCanvas::RunCanvas(const StateSpace& space) : space_(space), plane_(begins_in_plane(space)) {
+  component_ = space.components.front();
+  for (const Quantity& quantity : space.quantities)
+    if (quantity.indices == std::vector<int>{0}) {
+      component_ = quantity.name;
+      scale_ = quantity.scale;
+    }
+}
+
+void RunCanvas::add(double time_s, const BoundedVector& x, DrawnLine& line) const {
+  line.time_s.push_back(time_s);
+  if (plane_) line.x.push_back(x(0));
+  line.y.push_back(plane_ ? x(1) : scale_ * x(0));
+}
+
+void RunCanvas::add(const StepRecord& record, DrawnTrack& track) const {
+  const int first = record.space->component_index(space_.components[0]);
+  const int second = plane_ ? record.space->component_index(space_.components[1]) : first;
+  if (first < 0 || second < 0 || record.x.size() <= std::max(first, second)) return;
+  BoundedVector drawn(2);
+  drawn << record.x(first), record.x(second);
+  add(record.time_s, drawn, track.line);
+  const bool known = record.P.rows() == record.x.size();
+  const auto variance = [&](int i, int j) { return known ? record.P(i, j) : kNaN; };
+  if (plane_) {
+    track.xx.push_back(variance(first, first));
+    track.xy.push_back(variance(first, second));
+  }
+  track.yy.push_back((plane_ ? 1.0 : scale_ * scale_) * variance(second, second));
+}
+
+void RunCanvas::add_measured(const Recording& recording, RunPicture& picture) const {
+  const int east = place_of(recording.measured, "east_m"), north = place_of(recording.measured, "north_m");
+  const int range = place_of(recording.measured, "range_m"), bearing = place_of(recording.measured, "bearing_deg");
+  const int value = place_of(recording.measured, component_);
+  const bool sights = plane_ && bearing >= 0 && range < 0;
+  for (const Measurement& measurement : recording.measurements) {
+    const SensorState sensor = measurement.sensor.value_or(SensorState{});
+    const auto z = [&](int i) { return i < measurement.z.size() ? measurement.z(i) : kNaN; };
+    BoundedVector at(2);
+    if (sights) {
+      at = sensor.position_m;
+      add(measurement.time_s, at, picture.own_ship);
+      picture.bearing_deg.push_back(degrees(z(bearing)));
+    } else if (plane_ && range >= 0 && bearing >= 0) {
+      at << sensor.position_m.x() + z(range) * std::sin(z(bearing)),
+          sensor.position_m.y() + z(range) * std::cos(z(bearing));
+      add(measurement.time_s, at, picture.measured);
+    } else if (plane_ && east >= 0 && north >= 0) {
+      at << z(east), z(north);
+      add(measurement.time_s, at, picture.measured);
+    } else if (!plane_ && value >= 0) {
+      at << z(value) / scale_, 0.0;
+      add(measurement.time_s, at, picture.measured);
+    }
+  }
+}
+
+void RunCanvas::add_records(std::span<const StepRecord> records, const std::string& name,
+                            std::vector<DrawnTrack>& tracks) const {
+  for (const StepRecord& record : records) {
+    if (!record.x.allFinite() || record.x.size() == 0) continue;
+    auto track = std::find_if(tracks.begin(), tracks.end(), [&](const DrawnTrack& other) {
+      return other.tracker == name && other.line.track == record.track;
+    });
+    if (track == tracks.end()) {
+      tracks.push_back({name, {record.track, {}, {}, {}}, {}, {}, {}});
+      track = tracks.end() - 1;
+    }
+    add(record, *track);
+  }
+}
+
+}  // namespace truebearing

@@ -4,11 +4,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 
+#include "tests/support/error_message.hpp"
 #include "tests/support/markup.hpp"
 #include "tests/support/result_texts.hpp"
 #include "truebearing/report/sha256.hpp"
+#include "truebearing/report/study_plots.hpp"
 
 namespace truebearing::page_test {
 namespace {
@@ -74,6 +77,49 @@ TEST(Page, HasEveryPlotWithItsMarks) {
   EXPECT_THAT(run, HasSubstr("class=\"line truth\""));
   EXPECT_EQ(between(run, "data-times=\"", "\""), "1 3 4") << "the times of the bearings that are there";
   EXPECT_EQ(count_of(run, "data-times=\""), 4 + 4) << "of each ellipse; of bearings, own ship, truth and track";
+}
+
+// Two times of three angles; the strongest, and what is 15 dB or more below, which is not drawn.
+TEST(Page, DrawsWhatAnArrayHeardBehindItsTracks) {
+  ResultJson json = results_json();
+  ResultJson& picture = json["pictures"][0];
+  for (ResultJson* line : {&picture["truth"][0], &picture["tracks"][0]}) line->erase("x");
+  picture["tracks"][0].erase("xx");
+  picture["tracks"][0].erase("xy");
+  picture.erase("plane");
+  picture.erase("own_ship");
+  picture["component"] = "angle_deg";
+  picture["beam"] = {
+      {"time_s", {1.0, 3.0}}, {"angle_deg", {-30.0, 0.0, 30.0}}, {"below_dB", {{0, 4, 15}, {0, 7, nullptr}}}};
+  const std::string run = between(report_page({read(json)}), "id=\"run_median-frame\"", "</svg>");
+  EXPECT_EQ(count_of(between(run, "class=\"cells level1\" d=\"", "\""), "z"), 1) << "neighbours in time are one";
+  EXPECT_EQ(count_of(between(run, "class=\"cells level2\" d=\"", "\""), "z"), 1);
+  EXPECT_EQ(count_of(between(run, "class=\"cells level3\" d=\"", "\""), "z"), 1);
+  EXPECT_EQ(count_of(run, "level4") + count_of(run, "level5"), 0);
+  picture["beam"]["below_dB"][1] = {0};
+  EXPECT_THAT(testing::error_message([&] { read(json); }),
+              HasSubstr("pictures[0].beam.below_dB[1]: has columns of unequal"));
+}
+
+// Two targets 100 m apart, and tracks whose numbers say the wrong one.
+TEST(Page, ErrorOfTracksWithoutNumbersIsFromTheNearestTarget) {
+  ResultJson json = results_json();
+  ResultJson& picture = json["pictures"][0];
+  ResultJson second = picture["truth"][0];
+  second["track"] = 1;
+  for (ResultJson& y : second["y"]) y = y.get<double>() + 100.0;
+  picture["truth"].push_back(second);
+  picture["tracks"][0]["track"] = 1;
+  const auto errors = [&] {
+    for (const Plot& plot : picture_plots(read(json), ""))
+      if (plot.id == "run_median_error") return plot.series.at(0).y;
+    return std::vector<double>{kNaN};  // nothing to draw: no plot
+  };
+  EXPECT_EQ(errors(), (std::vector<double>{100.0, 100.0, 100.0, 100.0}));
+  picture["assigned_within"] = 50.0;
+  EXPECT_EQ(errors(), (std::vector<double>{0.0, 0.0, 0.0, 0.0}));
+  for (ResultJson& y : picture["tracks"][0]["y"]) y = y.get<double>() + 1000.0;
+  for (const double error : errors()) EXPECT_TRUE(std::isnan(error)) << "of no target";
 }
 
 TEST(Page, HasNoEmptyPlotWhereResultsHaveLess) {

@@ -59,6 +59,16 @@ TEST(Svg, EveryPointHasItsMark) {
   EXPECT_EQ(count_of(between(marks, "class=\"band s2\" d=\"", "\""), "Z"), 1);
 }
 
+TEST(Svg, CellsAreRectanglesAndAloneNoPlot) {
+  PlotSeries cells{"power", {"level1"}, Shape::cells, {1, 2}, {4, 5}, {5, 6}};
+  cells.x2 = {2, kMissing};
+  EXPECT_TRUE(plot_of({cells}).empty()) << "what is behind the lines says nothing by itself";
+  const Plot plot = plot_of({cells, {"line", tracker_look(0), Shape::line, {1, 3}, {4, 6}}});
+  const std::string path = between(marks_of(svg_text(plot)), "class=\"cells level1\" d=\"", "\"");
+  EXPECT_EQ(count_of(path, "z"), 1) << path;
+  EXPECT_EQ(count_of(number_tables(plot), "power"), 0);
+}
+
 TEST(Svg, PlaneHasOneScale) {
   Plot plot = plot_of({{"truth", {"truth"}, Shape::line, {0, 1000}, {0, 500}},
                        {"", tracker_look(0), Shape::ellipses, {500}, {250}, {}, {1e4}, {0}, {1e4}}});

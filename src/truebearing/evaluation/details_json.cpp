@@ -2,6 +2,7 @@
 #include "truebearing/evaluation/details_json.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "truebearing/evaluation/correction_json.hpp"
@@ -40,6 +41,19 @@ OrderedJson track_json(const DrawnTrack& track, std::size_t every) {
   return json;
 }
 
+// To the decibel, which is what shades can show.
+OrderedJson beam_json(const DrawnBeam& beam) {
+  OrderedJson json{{"time_s", times_json(beam.time_s, 1)}, {"angle_deg", six_digits(beam.angle_deg)}};
+  json["below_dB"] = OrderedJson::array();
+  for (const std::vector<double>& at_time : beam.below_dB) {
+    OrderedJson row = OrderedJson::array();
+    for (const double below_dB : at_time)
+      row.push_back(std::isfinite(below_dB) ? OrderedJson(std::lround(below_dB)) : OrderedJson(nullptr));
+    json["below_dB"].push_back(std::move(row));
+  }
+  return json;
+}
+
 }  // namespace
 
 nlohmann::ordered_json picture_json(const RunPicture& picture) {
@@ -65,6 +79,8 @@ nlohmann::ordered_json picture_json(const RunPicture& picture) {
     json["own_ship"] = line_json(picture.own_ship, every);
     json["own_ship"]["bearing_deg"] = six_digits(picture.bearing_deg, every);
   }
+  if (!picture.beam.time_s.empty()) json["beam"] = beam_json(picture.beam);
+  if (std::isfinite(picture.assigned_within)) json["assigned_within"] = picture.assigned_within;
   json["tracks"] = OrderedJson::array();
   for (const DrawnTrack& track : picture.tracks) json["tracks"].push_back(track_json(track, every));
   return json;

@@ -40,6 +40,7 @@ LogFollower::LogFollower(const TrackerSet& trackers) : trackers_(trackers.fresh(
 void LogFollower::follow(const Recording& recording, int number, double epoch_s) {
   trackers_.reset();
   canvas_.add_measured(recording, account_.picture);
+  if (account_.picture.beam.time_s.empty()) canvas_.add_beam(recording, account_.picture);
   std::vector<TrackerCounts> before(account_.trackers.size());
   for (const Measurement& logged : recording.measurements) {
     Measurement measurement = logged;

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "truebearing/array/beam_power.hpp"
+#include "truebearing/array/interval.hpp"
+#include "truebearing/array/sample_covariance.hpp"
 #include "truebearing/core/angle.hpp"
 #include "truebearing/core/constants.hpp"
 
@@ -72,6 +75,36 @@ void RunCanvas::add_measured(const Recording& recording, RunPicture& picture) co
       at << z(value) / scale_, 0.0;
       add(measurement.time_s, at, picture.measured);
     }
+  }
+}
+
+void RunCanvas::add_beam(const Recording& recording, RunPicture& picture) const {
+  if (!measures_snapshots(recording.measured) || recording.measurements.empty()) return;
+  constexpr std::size_t kMostTimes = 120;
+  constexpr int kEveryDegrees = 2;
+  DrawnBeam& beam = picture.beam;
+  std::vector<double> angles_rad;
+  for (int angle_deg = -90; angle_deg <= 90; angle_deg += kEveryDegrees) {
+    beam.angle_deg.push_back(angle_deg);
+    angles_rad.push_back(radians(angle_deg));
+  }
+  const std::size_t every = recording.measurements.size() / (kMostTimes + 1) + 1;
+  Interval interval;
+  Eigen::MatrixXcd R;
+  for (std::size_t i = 0; i < recording.measurements.size(); i += every) {
+    const Measurement& measurement = recording.measurements[i];
+    beam.time_s.push_back(measurement.time_s);
+    std::vector<double>& below_dB = beam.below_dB.emplace_back(angles_rad.size(), kNaN);
+    if (!measurement.snapshots) continue;
+    interval.take(*measurement.snapshots);
+    if (!interval.is_usable()) continue;
+    sample_covariance(interval, R);
+    const std::vector<double> power = beam_power({interval.sensors(), interval.spacing_wavelengths()}, R, angles_rad);
+    const double most = *std::max_element(power.begin(), power.end());
+    constexpr double kDecibel = 10.0, kLeastShare = 1e-12;
+    if (!(most > 0.0)) continue;
+    for (std::size_t angle = 0; angle < power.size(); ++angle)
+      below_dB[angle] = -kDecibel * std::log10(std::max(power[angle] / most, kLeastShare));
   }
 }
 

@@ -26,6 +26,8 @@ class RunCanvas {
 
   /// The measurements of a recording. Bearings are clockwise from North.
   void add_measured(const Recording& recording, RunPicture& picture) const;
+  /// What a line array heard, where the recording is of one: at no more than some hundred of its times.
+  void add_beam(const Recording& recording, RunPicture& picture) const;
   /// Records of a tracker of that name, each to the end of its track's line.
   void add_records(std::span<const StepRecord> records, const std::string& name, std::vector<DrawnTrack>& tracks) const;
 

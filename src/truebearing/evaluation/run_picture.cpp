@@ -28,6 +28,7 @@ RunPicture draw(TrackerSet trackers, const std::vector<std::string>& drawn, cons
       canvas.add(recording.measurements[step].time_s, truth.x[step], line);
   }
   canvas.add_measured(recording, picture);
+  canvas.add_beam(recording, picture);
   for (const Measurement& measurement : recording.measurements) {
     trackers.step(measurement);
     for (int i = 0; i < trackers.size(); ++i)
@@ -74,6 +75,7 @@ std::vector<RunPicture> picture_runs(const TrackerSet& trackers, const std::vect
     picture.which = which;
     picture.run = run % options.runs;
     if (scenarios.size() > 1) picture.set = scenario.name;
+    if (options.scoring.assignment) picture.assigned_within = options.scoring.assignment->cutoff;
     picture.judged_by = drawn.front();
     picture.quantity = comparison.trackers[judge].quantities.front().name;
     picture.rmse = rmse[run];

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "truebearing/core/constants.hpp"
 #include "truebearing/evaluation/comparison.hpp"
 
 namespace truebearing {
@@ -22,6 +23,12 @@ struct DrawnTrack {
   std::vector<double> xx, xy, yy;  ///< covariance of (x, y); of y alone yy
 };
 
+/// What a line array heard: the power of its beam at each angle over time.
+struct DrawnBeam {
+  std::vector<double> time_s, angle_deg;      ///< from broadside
+  std::vector<std::vector<double>> below_dB;  ///< [time][angle]: below the strongest at that time; NaN of a gap
+};
+
 struct RunPicture {
   std::string which;      ///< "best", "median", "worst"
   std::string set;        ///< of which the run is, where there are several
@@ -36,6 +43,9 @@ struct RunPicture {
   DrawnLine own_ship;               ///< where the sensor was; empty where it stands at the origin or is not told
   std::vector<double> bearing_deg;  ///< from own ship, at each of its times; empty where none was measured, NaN a miss
   std::vector<DrawnTrack> tracks;
+  DrawnBeam beam;  ///< of a line array, else empty
+  /// Where tracks belong to targets not by their numbers but by where they are: within so much, in the component's unit.
+  double assigned_within = kNaN;
 };
 
 /// The trackers whose tracks are drawn, first the one that runs are judged by: of the first pair that is compared, else

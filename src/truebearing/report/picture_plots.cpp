@@ -30,6 +30,42 @@ bool stands_still(const ResultLine& line) {
   return is_same(line.x) && is_same(line.y);
 }
 
+// Neighbours in time of one shade are one rectangle: an angle's row mostly holds few.
+void add_beam(const ResultPicture& picture, Plot& plot) {
+  constexpr double kShade = 3.0;
+  constexpr int kShades = 5;
+  const std::vector<double>&time_s = picture.beam_time_s, &angle_deg = picture.beam_angle_deg;
+  if (time_s.size() < 2 || angle_deg.size() < 2) return;
+  const double half = 0.5 * (angle_deg[1] - angle_deg[0]);
+  const auto begins_at = [&](std::size_t i) {
+    if (i == 0) return time_s[0];
+    return i < time_s.size() ? 0.5 * (time_s[i - 1] + time_s[i]) : time_s.back();
+  };
+  std::vector<PlotSeries> shades;
+  for (int shade = 0; shade < kShades; ++shade)
+    shades.push_back({shade == 0 ? "beam's power, in steps of 3 dB" : "",
+                      {fmt::format("level{}", shade + 1)},
+                      Shape::cells,
+                      {},
+                      {}});
+  const auto shade_of = [&](std::size_t i, std::size_t angle) {
+    const double below_dB = picture.below_dB[i][angle];
+    return std::isfinite(below_dB) && below_dB < kShade * kShades ? static_cast<int>(below_dB / kShade) : -1;
+  };
+  for (std::size_t angle = 0; angle < angle_deg.size(); ++angle)
+    for (std::size_t first = 0, next = 0; first < time_s.size(); first = next) {
+      while (next < time_s.size() && shade_of(next, angle) == shade_of(first, angle)) ++next;
+      if (shade_of(first, angle) < 0) continue;
+      PlotSeries& cells = shades[static_cast<std::size_t>(shade_of(first, angle))];
+      cells.x.push_back(begins_at(first));
+      cells.x2.push_back(begins_at(next));
+      cells.y.push_back(angle_deg[angle] - half);
+      cells.y2.push_back(angle_deg[angle] + half);
+    }
+  for (PlotSeries& cells : shades)
+    if (!cells.x.empty()) plot.series.push_back(std::move(cells));
+}
+
 void add_own_ship(const ResultPicture& picture, Plot& plot) {
   if (picture.own_ship.y.empty()) return;
   PlotSeries sights = drawn("bearing", {"measured"}, Shape::sights, picture.own_ship);
@@ -95,6 +131,7 @@ ResultPicture on_clock(ResultPicture picture) {
   picture.clock_zero_s = clock.zero_s;
   picture.clock_label = clock.label;
   each_line([&](ResultLine& line) { line.time_s = clock.from(std::move(line.time_s)); });
+  picture.beam_time_s = clock.from(std::move(picture.beam_time_s));
   return picture;
 }
 
@@ -103,6 +140,7 @@ Plot drawn_picture(const ResultPicture& picture, const std::function<Look(const 
   plot.equal = picture.in_plane;
   plot.x_label = picture.in_plane ? "East (m)" : picture.clock_label;
   plot.y_label = picture.in_plane ? "North (m)" : axis_name(picture.component);
+  if (!picture.in_plane) add_beam(picture, plot);
   add_own_ship(picture, plot);
   if (!picture.measured.y.empty())
     plot.series.push_back(drawn("measured", {"measured"}, Shape::dots, picture.measured));
@@ -133,6 +171,26 @@ Plot picture_plot(const Results& results, const ResultPicture& picture, const st
   return plot;
 }
 
+// From the target that is nearest at each time, where tracks belong to targets by where they are; none within reach: none.
+PlotSeries error_of_nearest(const std::vector<ResultLine>& targets, double within, const ResultTrack& track,
+                            const std::string& name, const Look& look) {
+  PlotSeries line{name, look, Shape::line, {}, {}};
+  for (std::size_t i = 0; i < track.line.y.size(); ++i) {
+    double least = kNaN;
+    for (const ResultLine& truth : targets) {
+      const auto at = std::lower_bound(truth.time_s.begin(), truth.time_s.end(), track.line.time_s[i]);
+      if (at == truth.time_s.end() || *at != track.line.time_s[i]) continue;
+      const auto step = static_cast<std::size_t>(at - truth.time_s.begin());
+      const double dy = track.line.y[i] - truth.y[step];
+      const double error = truth.x.empty() ? dy : std::hypot(track.line.x[i] - truth.x[step], dy);
+      if (std::abs(error) <= within && !(std::abs(error) >= std::abs(least))) least = error;
+    }
+    line.x.push_back(track.line.time_s[i]);
+    line.y.push_back(least);
+  }
+  return line;
+}
+
 // At the times that both have: the distance in the plane, else the difference.
 PlotSeries error_of(const ResultLine& truth, const ResultTrack& track, const std::string& name, const Look& look) {
   PlotSeries line{name, look, Shape::line, {}, {}};
@@ -158,13 +216,22 @@ Plot picture_error_plot(const Results& results, const ResultPicture& picture, co
                      : fmt::format("{} − truth ({})", name_of(picture.component), unit_of(picture.component));
   plot.caption =
       picture.in_plane ? "How far each track is from the truth." : "By how much each track is above the truth.";
+  if (std::isfinite(picture.assigned_within))
+    plot.caption +=
+        fmt::format(" Of several targets, from the nearest at each time; one that has none within {} {} is left out.",
+                    shown(picture.assigned_within), unit_of(picture.component));
   std::vector<std::string> named;
   std::vector<double> errors;
   for (const ResultTrack& track : picture.tracks)
     for (const ResultLine& truth : picture.truth) {
-      if (picture.truth.size() > 1 && truth.track != track.line.track) continue;
+      const bool nearest = std::isfinite(picture.assigned_within) && picture.truth.size() > 1;
+      if (nearest ? &truth != &picture.truth.front() : picture.truth.size() > 1 && truth.track != track.line.track)
+        continue;
       const bool again = std::find(named.begin(), named.end(), track.tracker) != named.end();
-      plot.series.push_back(error_of(truth, track, again ? "" : track.tracker, look_of(results.all, track.tracker)));
+      const std::string name = again ? "" : track.tracker;
+      const Look look = look_of(results.all, track.tracker);
+      plot.series.push_back(nearest ? error_of_nearest(picture.truth, picture.assigned_within, track, name, look)
+                                    : error_of(truth, track, name, look));
       named.push_back(track.tracker);
       errors.insert(errors.end(), plot.series.back().y.begin(), plot.series.back().y.end());
     }

@@ -11,7 +11,7 @@ namespace truebearing {
 /// Who or what a mark stands for: colours and dashes are the style sheet's (style.hpp).
 struct Look {
   std::string name;  ///< a class: "s0" ... "s7" of trackers, "truth", "bound", "measured", "own", "ideal",
-                     ///< "other", "seen", "event"
+                     ///< "other", "event", "seen", "level1" ... "level5"
 };
 /// Of the i-th tracker of a study.
 Look tracker_look(std::size_t i);
@@ -21,6 +21,7 @@ enum class Shape : unsigned char {
   dots,      ///< a dot at each (x, y)
   band,      ///< between y and y2 over x
   ellipses,  ///< of two standard deviations about (x, y), covariance (xx, xy, yy)
+  cells,     ///< rectangles from (x, y) to (x2, y2)
   sights     ///< from (x, y) along the bearing y2, degrees clockwise from upwards, to the edge
 };
 
@@ -32,6 +33,7 @@ struct PlotSeries {
   std::vector<double> y2 = {};
   std::vector<double> xx = {}, xy = {}, yy = {};
   std::vector<double> time_s = {};  ///< of each mark, where the plot can be played
+  std::vector<double> x2 = {};      ///< of cells
 };
 
 struct Plot {
@@ -51,7 +53,7 @@ struct Plot {
 /// The plot as an SVG element. standalone: as a file of its own, with its style sheet.
 std::string svg_text(const Plot& plot, bool standalone = false);
 
-/// Its numbers as HTML tables, one for the series that share x; of many rows every n-th. Ellipses are left out.
+/// Its numbers as HTML tables, one for the series that share x; of many rows every n-th. Ellipses and cells are left out.
 std::string number_tables(const Plot& plot);
 
 }  // namespace truebearing

@@ -24,7 +24,7 @@ struct Extent {
 // Bands and ellipses may leave the frame where what they are about does not: a band of errors reaches down to nothing.
 void take_series(const Plot& plot, Extent& x, Extent& y) {
   for (const PlotSeries& series : plot.series) {
-    if (series.shape == Shape::ellipses) continue;
+    if (series.shape == Shape::ellipses || series.shape == Shape::cells) continue;
     for (const double value : series.x) x.take(value, plot.x_logarithmic);
     for (const double value : series.y) y.take(value, plot.y_logarithmic);
     if (series.shape == Shape::band && !plot.y_logarithmic)

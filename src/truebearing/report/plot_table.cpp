@@ -54,7 +54,8 @@ std::string table_of(const Plot& plot, const PlotSeries& first, const std::vecto
 }
 
 bool has_numbers(const PlotSeries& series) {
-  return !series.name.empty() && series.look.name != "ideal" && series.shape != Shape::ellipses && !series.x.empty();
+  return !series.name.empty() && series.look.name != "ideal" && series.shape != Shape::ellipses &&
+         series.shape != Shape::cells && !series.x.empty();
 }
 
 }  // namespace

@@ -205,6 +205,17 @@ ResultTrack read_track(const ResultReader& json) {
   return track;
 }
 
+void read_beam(const ResultReader& json, ResultPicture& picture) {
+  picture.beam_time_s = json.at("time_s").numbers();
+  picture.beam_angle_deg = json.at("angle_deg").numbers();
+  for (const ResultReader& at_time : json.at("below_dB").items()) {
+    picture.below_dB.push_back(at_time.numbers());
+    if (picture.below_dB.back().size() != picture.beam_angle_deg.size())
+      throw at_time.error("has columns of unequal length");
+  }
+  if (picture.below_dB.size() != picture.beam_time_s.size()) throw json.error("has columns of unequal length");
+}
+
 }  // namespace
 
 ResultPicture read_picture(const ResultReader& json) {
@@ -225,6 +236,8 @@ ResultPicture read_picture(const ResultReader& json) {
     picture.bearing_deg = json.at("own_ship").numbers_or_none("bearing_deg");
   }
   for (const ResultReader& track : json.at("tracks").items()) picture.tracks.push_back(read_track(track));
+  picture.assigned_within = json.number_or_nan("assigned_within");
+  if (json.has("beam")) read_beam(json.at("beam"), picture);
   return picture;
 }
 

@@ -99,6 +99,10 @@ struct ResultPicture {
   ResultLine measured, own_ship;
   std::vector<double> bearing_deg;
   std::vector<ResultTrack> tracks;
+  /// What a line array heard: decibels below the strongest at each time, [time][angle].
+  std::vector<double> beam_time_s, beam_angle_deg;
+  std::vector<std::vector<double>> below_dB;
+  double assigned_within = kNaN;  ///< tracks belong to targets not by their numbers but within so much of them
 };
 
 struct Results {

@@ -32,6 +32,8 @@ svg.plot text { fill: var(--ink); } svg.plot .tick { fill: var(--soft); font-siz
 .other { stroke: var(--soft); fill: var(--soft); } .line.other { stroke-width: 1; stroke-opacity: 0.45; }
 .band.seen { fill: var(--measured); fill-opacity: 0.32; }
 .event { stroke: var(--ink); fill: var(--ink); } .line.event { stroke-width: 1; stroke-dasharray: 2 3; } .dots.event { stroke-width: 8; stroke-opacity: 0.8; }
+.cells { stroke: none; fill: var(--ink); } .level1 { fill-opacity: 0.42; } .level2 { fill-opacity: 0.3; } .level3 { fill-opacity: 0.2; }
+.level4 { fill-opacity: 0.12; } .level5 { fill-opacity: 0.06; }
 .line.ideal { stroke-width: 1; stroke-opacity: 0.7; } .line.own { stroke-width: 3; stroke-opacity: 0.5; }
 .line { fill: none; } .dots { fill: none; } .sight { fill: none; } .band { stroke: none; }
 )";

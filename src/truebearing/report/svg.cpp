@@ -152,6 +152,17 @@ std::string draw_ellipses(const PlotSeries& series, const PlotFrame& frame) {
   return text;
 }
 
+std::string draw_cells(const PlotSeries& series, const PlotFrame& frame) {
+  std::string path;
+  for (std::size_t i = 0; i < std::min({series.x.size(), series.y.size(), series.x2.size(), series.y2.size()}); ++i) {
+    const double left = frame.x(series.x[i]), right = frame.x(series.x2[i]);
+    const double bottom = frame.y(series.y[i]), top = frame.y(series.y2[i]);
+    if (std::isfinite(left) && std::isfinite(right) && std::isfinite(bottom) && std::isfinite(top))
+      path += fmt::format("M{:.1f} {:.1f}H{:.1f}V{:.1f}H{:.1f}z", left, bottom, right, top, left);
+  }
+  return path.empty() ? "" : fmt::format("<path class=\"cells {}\" d=\"{}\"/>\n", series.look.name, path);
+}
+
 std::string draw_sights(const PlotSeries& series, const PlotFrame& frame) {
   std::string path;
   MarkTimes times;
@@ -176,6 +187,8 @@ std::string draw_series(const PlotSeries& series, const PlotFrame& frame) {
       return draw_band(series, frame);
     case Shape::ellipses:
       return draw_ellipses(series, frame);
+    case Shape::cells:
+      return draw_cells(series, frame);
     case Shape::sights:
       return draw_sights(series, frame);
   }
@@ -213,6 +226,8 @@ std::string legend_mark(const PlotSeries& series, double x, double y) {
       return fmt::format("<path class=\"dots {}\" d=\"M{:.1f} {:.1f}h0\"/>", series.look.name, x + 12.0, y - 4.0);
     case Shape::sights:
       return fmt::format("<path class=\"sight {}\" d=\"M{:.1f} {:.1f}l24 -8\"/>", series.look.name, x, y);
+    case Shape::cells:
+      return fmt::format("<path class=\"cells {}\" d=\"M{:.1f} {:.1f}h24v-10h-24Z\"/>", series.look.name, x, y + 1.0);
     default:
       return fmt::format("<path class=\"band {}\" d=\"M{:.1f} {:.1f}h24v-10h-24Z\"/>", series.look.name, x, y + 1.0);
   }
@@ -247,7 +262,7 @@ Look tracker_look(std::size_t i) {
 
 bool Plot::empty() const {
   return std::none_of(series.begin(), series.end(), [](const PlotSeries& s) {
-    if (s.look.name == "ideal" || s.shape == Shape::band) return false;
+    if (s.look.name == "ideal" || s.shape == Shape::band || s.shape == Shape::cells) return false;
     for (std::size_t i = 0; i < std::min(s.x.size(), s.y.size()); ++i)
       if (std::isfinite(s.x[i]) && std::isfinite(s.y[i])) return true;
     return false;

@@ -50,6 +50,8 @@ class Correction {
   const CorrectionModel& model() const { return *model_; }
   const std::shared_ptr<const CorrectionModel>& shared_model() const { return model_; }
   const CorrectionBounds& bounds() const { return bounds_; }
+  /// The gate in force: the model's, within the bounds; nothing where these say so.
+  const std::optional<BoxGate>& gate() const { return gate_; }
 
  private:
   struct Track {
@@ -69,7 +71,7 @@ class Correction {
 
   std::shared_ptr<const CorrectionModel> model_;
   CorrectionBounds bounds_;
-  std::optional<BoxGate> gate_;  // the model's, within those bounds
+  std::optional<BoxGate> gate_;
   CorrectionInputs inputs_;
   int fallback_ = -1;  // its index in the ensemble; -1 where there is none
   std::vector<Track> tracks_;

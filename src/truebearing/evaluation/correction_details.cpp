@@ -6,10 +6,11 @@
 #include <variant>
 
 namespace truebearing {
+
 CorrectionTally::CorrectionTally(const Correction& correction)
     : model_(correction.shared_model()),
       kappa_(correction.bounds().kappa),
-      gated_(correction.bounds().gate && model_->gate.has_value()),
+      gate_(correction.gate()),
       bounds_(describe(correction.bounds())),
       features_(model_->design.features.size()) {
   if (const auto* rules = std::get_if<RuleBase>(&model_->network))
@@ -51,15 +52,15 @@ void CorrectionTally::take_features(const CorrectionAccount& account) {
     feature.squares += value * value;
     feature.least = std::min(feature.least, value);
     feature.greatest = std::max(feature.greatest, value);
-    if (gated_ && (value < model_->gate->low[place] || value > model_->gate->high[place])) feature.outside += 1.0;
+    if (gate_ && (value < gate_->low[place] || value > gate_->high[place])) feature.outside += 1.0;
     const InputScale standard = input_scale(model_->network, place);
     const double share = 0.5 + 0.5 * (value - standard.mean) / (standard.scale * standard.clip);
     constexpr auto kLast = static_cast<double>(CorrectionDetails::kBins) - 1.0;
     feature.counted[static_cast<std::size_t>(std::clamp(std::floor((kLast + 1.0) * share), 0.0, kLast))] += 1.0;
   }
-  if (!gated_) return;
-  if (model_->gate->intervals.excess(account.intervals) > 0.0) outside_intervals_ += 1.0;
-  if (!(account.disagreement <= model_->gate->largest_disagreement)) outside_disagreement_ += 1.0;
+  if (!gate_) return;
+  if (gate_->intervals.excess(account.intervals) > 0.0) outside_intervals_ += 1.0;
+  if (!(account.disagreement <= gate_->largest_disagreement)) outside_disagreement_ += 1.0;
 }
 
 void CorrectionTally::take_rules(const CorrectionAccount& account) {

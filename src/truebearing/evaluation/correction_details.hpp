@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -70,7 +71,7 @@ class CorrectionTally {
 
   std::shared_ptr<const CorrectionModel> model_;
   double kappa_;
-  bool gated_;
+  std::optional<BoxGate> gate_;
   std::string bounds_;
   std::vector<Step> steps_;
   std::vector<CorrectionDetails::Rule> rules_;  // sums

@@ -8,15 +8,13 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <map>
 #include <memory>
 #include <string>
 
 #include "truebearing/correction/fuzzy_network.hpp"
 #include "truebearing/motion/any_motion.hpp"
+#include "truebearing/motion/equal_pieces.hpp"
 #include "truebearing/motion/motion_model.hpp"
 
 namespace truebearing {
@@ -39,17 +37,17 @@ struct LearnedMotion {
   std::shared_ptr<const SizedMotion<N>> around;  ///< f_0
   std::shared_ptr<const MotionResidual> residual;
 
-  /// Not finite over more than kMostPieces periods: nothing is left then of what was known.
+  /// Not finite over more than EqualPieces::kMost periods.
   State f(const State& x, double dt_s) const {
     State at = x;
-    const Pieces cut = pieces(dt_s);
+    const EqualPieces<double> cut(dt_s, residual->period_s);
     for (int i = 0; i < cut.count; ++i) at = crossed(at, cut.length_s);
     return at;
   }
   Matrix F(const State& x, double dt_s) const {
     State at = x;
     Matrix whole = Matrix::Identity();
-    const Pieces cut = pieces(dt_s);
+    const EqualPieces<double> cut(dt_s, residual->period_s);
     for (int i = 0; i < cut.count; ++i) {
       FuzzyNetwork::Strengths phi;
       residual->network.strengths(at, phi);
@@ -62,20 +60,6 @@ struct LearnedMotion {
   Matrix Q(double dt_s) const { return around->Q(dt_s); }
 
  private:
-  struct Pieces {
-    int count;
-    double length_s;
-  };
-  static constexpr int kMostPieces = 4096;
-
-  Pieces pieces(double dt_s) const {
-    constexpr double kRounding = 1e-6;  // of a gap that is one period long
-    const double count = std::ceil(dt_s / residual->period_s - kRounding);
-    if (!(count <= kMostPieces)) return {1, std::numeric_limits<double>::quiet_NaN()};
-    const int whole = std::max(1, static_cast<int>(count));
-    return {whole, dt_s / whole};
-  }
-
   State crossed(const State& x, double dt_s) const {
     FuzzyNetwork::Strengths phi;
     residual->network.strengths(x, phi);

@@ -9,10 +9,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "truebearing/motion/equal_pieces.hpp"
 #include "truebearing/motion/motion_model.hpp"
 
 namespace truebearing {
@@ -109,17 +108,17 @@ struct LorenzMotion {
   Scalar step_s;     ///< > 0
   Scalar sigma = 0;  ///< of the process noise, per component and step_s
 
-  /// Not finite over more than kMostPieces pieces: after as long, nothing is left of what was known.
+  /// Not finite over more than EqualPieces::kMost pieces.
   State f(const State& x, Scalar dt_s) const {
     State at = x;
-    const Pieces cut = pieces(dt_s);
+    const EqualPieces<Scalar> cut(dt_s, step_s);
     for (int i = 0; i < cut.count; ++i) at = step.f(at, cut.length_s);
     return at;
   }
   Matrix F(const State& x, Scalar dt_s) const {
     State at = x;
     Matrix whole = Matrix::Identity();
-    const Pieces cut = pieces(dt_s);
+    const EqualPieces<Scalar> cut(dt_s, step_s);
     for (int i = 0; i < cut.count; ++i) {
       whole = (step.F(at, cut.length_s) * whole).eval();
       if (i + 1 < cut.count) at = step.f(at, cut.length_s);
@@ -127,21 +126,6 @@ struct LorenzMotion {
     return whole;
   }
   Matrix Q(Scalar dt_s) const { return sigma * sigma * dt_s / step_s * Matrix::Identity(); }
-
- private:
-  struct Pieces {
-    int count;
-    Scalar length_s;
-  };
-  static constexpr int kMostPieces = 4096;
-
-  Pieces pieces(Scalar dt_s) const {
-    constexpr Scalar kRounding = Scalar(1e-6);  // of a gap that is one step long
-    const Scalar count = std::ceil(dt_s / step_s - kRounding);
-    if (!(count <= kMostPieces)) return {1, std::numeric_limits<Scalar>::quiet_NaN()};
-    const int whole = std::max(1, static_cast<int>(count));
-    return {whole, dt_s / static_cast<Scalar>(whole)};
-  }
 };
 
 static_assert(NonlinearMotionModel<LorenzMotion<LorenzTaylor>>);

@@ -52,8 +52,11 @@ PLAY = r"""
     const whole = length(), first = at(slider.min), middle = at((Number(slider.min) + Number(slider.max)) / 2), last = at(slider.max);
     button.click();
     const started = button.textContent;
-    await wait(80);
-    const playing = Number(slider.value) < Number(slider.max);
+    let playing = false;
+    for (let waited = 0; waited < 5000 && !playing; waited += 50) {  // for a first frame
+      await wait(50);
+      playing = Number(slider.value) < Number(slider.max);
+    }
     button.click();
     told.push({ whole, first, middle, last, started, playing, stopped: button.textContent, label: slider.getAttribute("aria-label") });
     at(slider.max);

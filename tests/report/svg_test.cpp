@@ -84,6 +84,19 @@ TEST(Svg, PlaneHasOneScale) {
   EXPECT_NEAR(std::stod(between(ellipse, "rx=\"", "\"")), 0.2 * across, 0.2) << "two standard deviations of 100 m";
 }
 
+TEST(Svg, EllipseAtTheEdgeIsWhollyThere) {
+  Plot plot = plot_of({{"course", tracker_look(0), Shape::line, {0, 1000}, {0, 500}},
+                       {"", tracker_look(0), Shape::ellipses, {1000}, {500}, {}, {1e4}, {0}, {1e4}}});
+  plot.equal = true;
+  const std::string ellipse = between(svg_text(plot), "<ellipse", "/>");
+  const double right = std::stod(between(ellipse, "translate(", " ")) + std::stod(between(ellipse, "rx=\"", "\""));
+  EXPECT_LT(right, 544.0) << "where the frame ends";
+  plot.series[1].xx = plot.series[1].yy = {1e8};
+  const std::string svg = svg_text(plot);
+  const double x = std::stod(between(between(svg, "<ellipse", "/>"), "translate(", " "));
+  EXPECT_GT(x, 500.0) << "one that is larger than all else leaves the rest as it is";
+}
+
 TEST(Svg, EllipseLiesAlongItsCovariance) {
   Plot plot = plot_of({{"truth", {"truth"}, Shape::line, {0, 1000}, {0, 1000}},
                        {"", tracker_look(0), Shape::ellipses, {500}, {500}, {}, {1e4}, {9e3}, {1e4}}});

@@ -98,7 +98,7 @@ std::pair<std::string, double> unit_for_people(const std::string& component) {
 }
 
 // As many as its standard deviation leaves sense in.
-int digits_of(double value, double sigma) {
+int digits_beside(double value, double sigma) {
   constexpr double kUsual = 4.0, kMost = 12.0;
   if (!(sigma > 0.0) || !(std::abs(value) > 0.0) || !std::isfinite(sigma)) return static_cast<int>(kUsual);
   return static_cast<int>(
@@ -130,7 +130,7 @@ std::string last_estimates(const LogResults& results) {
         };
         const double value = value_in(last.estimate), sigma = value_in(last.sigma);
         rows += std::isfinite(value) ? fmt::format("<td>{} <span class=\"se\">± {}</span></td>",
-                                                   shown(value, digits_of(value, sigma)), shown(sigma, 2))
+                                                   shown(value, digits_beside(value, sigma)), shown(sigma, 2))
                                      : "<td>-</td>";
       }
       rows += fmt::format("<td>{}</td></tr>\n", escaped(last.status));

@@ -53,6 +53,23 @@ void keep_near_truth(const Plot& plot, Extent& x, Extent& y) {
   if (plot.equal) cut(x, core_x, reach);
 }
 
+// Ellipses in the plane that are not larger than what they are about.
+void take_ellipses(const Plot& plot, Extent& x, Extent& y) {
+  const double reach = 0.5 * std::max(x.high - x.low, y.high - y.low);
+  const Extent core_x = x, core_y = y;
+  for (const PlotSeries& series : plot.series)
+    for (std::size_t i = 0; i < series.xx.size(); ++i) {
+      const double half_x = 2.0 * std::sqrt(series.xx[i]), half_y = 2.0 * std::sqrt(series.yy[i]);
+      const bool inside = series.x[i] >= core_x.low && series.x[i] <= core_x.high && series.y[i] >= core_y.low &&
+                          series.y[i] <= core_y.high;
+      if (!inside || !(std::max(half_x, half_y) < reach)) continue;
+      for (const double side : {-1.0, 1.0}) {
+        x.take(series.x[i] + side * half_x, false);
+        y.take(series.y[i] + side * half_y, false);
+      }
+    }
+}
+
 // A few values that have run away by many decades would press all others together: a logarithmic axis ends three
 // decades from the median, where a factor of two can still be seen. Lines leave the frame there.
 void keep_near_median(std::vector<double> values, Extent& extent) {
@@ -117,6 +134,7 @@ PlotFrame frame_of(const Plot& plot, double top) {
   Extent x, y;
   take_series(plot, x, y);
   keep_near_truth(plot, x, y);
+  if (plot.equal) take_ellipses(plot, x, y);
   if (plot.x_logarithmic && !plot.equal) keep_near_median(values_of(plot, &PlotSeries::x), x);
   if (plot.y_logarithmic && !plot.equal) keep_near_median(values_of(plot, &PlotSeries::y), y);
   PlotFrame frame;

@@ -69,8 +69,9 @@ summary:focus-visible { outline: 2px solid var(--s0); outline-offset: 2px; }
 footer { margin-top: 3em; color: var(--soft); font-size: 0.85rem; }
 @media (max-width: 520px) { body { font-size: 15px; } figure { padding: 8px 4px; border-radius: 0; } main { padding: 12px 8px 32px; }
   svg.plot { font-size: 14px; } svg.plot .tick { font-size: 14px; } }
-@media print { body { font-size: 10pt; } main { max-width: none; padding: 0; } figure, table { break-inside: avoid; }
-  .plots { grid-template-columns: 1fr 1fr; gap: 8px; } figure { border: none; padding: 4px; } details, .player { display: none; } }
+@media print { :root, body { font-size: 10pt; } main { max-width: none; padding: 0; } figure, table { break-inside: avoid; }
+  .plots { grid-template-columns: 1fr 1fr; gap: 8px; } figure { border: none; padding: 4px; } details, .player { display: none; }
+  .wide { overflow: visible; } table { font-size: 7.5pt; } th, td { padding: 2px 5px; } thead th { white-space: normal; } .tag { font-size: 6pt; } }
 )";
   return style;
 }

@@ -49,7 +49,7 @@ TEST(PublishedRows, StandInTheTablesThatHaveTheirFigures) {
   const Comparison comparison = compared(study(kRow));
   const std::string table = comparison_table(comparison);
   EXPECT_THAT(table, HasSubstr("a paper's (published)            123.0"));
-  EXPECT_THAT(table, HasSubstr("a paper's (published)   -4.500"));
+  EXPECT_THAT(table, HasSubstr("a paper's (published)  -4.500"));
   EXPECT_THAT(table, HasSubstr("\na paper's (published): A. Nonymous 1960, table 1\n"));
   const auto json = nlohmann::json::parse(comparison_json(comparison));
   EXPECT_EQ(json["published"],
@@ -77,18 +77,18 @@ TEST(PublishedRows, AreNotOfARecordedTrack) {
 TEST(PublishedRows, WhatTheComparisonDoesNotHaveIsRefused) {
   const std::string row = "[[published]]\nname = \"x\"\nsource = \"s\"\n";
   EXPECT_EQ(refusal(row + "mse_db = -1.0\nvelocity_mps = 3.0\nnees = 2.0\n"), "no error");
-  EXPECT_THAT(refusal(row + "mse_dB = -1.0\n"), AllOf(HasSubstr("published[0].mse_dB is no figure of this comparison"),
+  EXPECT_THAT(refusal(row + "mse_dB = -1.0\n"), AllOf(HasSubstr("published[0].mse_dB: is no figure of this comparison"),
                                                       HasSubstr("did you mean \"mse_db\"")));
   EXPECT_THAT(refusal(row + "position_peak_error = 1.0\n"), HasSubstr("is no figure of this comparison"));
   EXPECT_THAT(refusal(row), AllOf(HasSubstr("published[0]"), HasSubstr("holds no figure")));
   EXPECT_THAT(refusal(row + "nees = { short = 1.0 }\n"),
-              AllOf(HasSubstr("published[0].nees.short is no set of the study"), HasSubstr("it has no sets")));
+              AllOf(HasSubstr("published[0].nees.short: is no set of the study"), HasSubstr("it has no sets")));
   EXPECT_THAT(refusal(row + "nees = { shrt = 1.0 }\n", "[sets]\nshort = { steps = 10 }\n"),
               HasSubstr("did you mean \"short\""));
   EXPECT_THAT(refusal(row + "nees = 1.0\n" + row + "nees = 1.0\n"),
-              AllOf(HasSubstr("published[1].name is \"x\" once more"), HasSubstr("a name that no other row has")));
-  EXPECT_THAT(refusal("[[published]]\nname = \"x\"\nnees = 1.0\n"), HasSubstr("published[0].source is missing"));
-  EXPECT_THAT(refusal(row + "nees = \"two\"\n"), HasSubstr("published[0].nees is text"));
+              AllOf(HasSubstr("published[1].name: is \"x\" once more"), HasSubstr("a name that no other row has")));
+  EXPECT_THAT(refusal("[[published]]\nname = \"x\"\nnees = 1.0\n"), HasSubstr("published[0].source: is missing"));
+  EXPECT_THAT(refusal(row + "nees = \"two\"\n"), HasSubstr("published[0].nees: is text"));
 }
 
 }  // namespace

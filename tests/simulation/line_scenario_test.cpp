@@ -105,6 +105,45 @@ TEST(LineScenario, SigmaIsReportedWhereAsked) {
   EXPECT_EQ(LineScenario(parameters).simulate(kKey).measurements[0].sigma(0), 10.0);
 }
 
+TEST(LineScenario, AMixtureDrawsItsVarianceForEachMeasurement) {
+  LineParameters parameters = moving_target();
+  parameters.steps = 20'000;
+  parameters.reported = true;
+  parameters.mixture = NoiseMixture{{0.6, 0.4}, {1.5, 0.25}};
+  const Recording recording = LineScenario(parameters).simulate(kKey);
+  const std::vector<double> all = errors(recording);
+  std::vector<double> loud, quiet;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const double sigma_m = recording.measurements[k].sigma(0);
+    (sigma_m > 10.0 ? loud : quiet).push_back(all[k]);
+    EXPECT_EQ(sigma_m, sigma_m > 10.0 ? 10.0 * std::sqrt(1.5) : 5.0);
+  }
+  const double share = static_cast<double>(loud.size()) / static_cast<double>(all.size());
+  EXPECT_NEAR(share, 0.6, mean_margin(std::sqrt(0.24), all.size()));
+  EXPECT_TRUE(variance_fits(moments(loud).variance, 150.0, loud.size()));
+  EXPECT_TRUE(variance_fits(moments(quiet).variance, 25.0, quiet.size()));
+  EXPECT_FALSE(variance_fits(moments(quiet).variance, 30.0, quiet.size()));
+}
+
+TEST(LineScenario, AVelocityIsMeasuredWhereAsked) {
+  LineParameters parameters = moving_target();
+  parameters.steps = 20'000;
+  EXPECT_EQ(LineScenario(parameters).measured(), Measured::position(1));
+  parameters.velocity_sigma_mps = 3.0;
+  parameters.reported = true;
+  const LineScenario scenario(parameters);
+  EXPECT_EQ(scenario.measured()->components, (std::vector<std::string>{"position_m", "velocity_mps"}));
+  const Recording recording = scenario.simulate(kKey);
+  EXPECT_EQ(recording.measured, scenario.measured()->components);
+  EXPECT_EQ(recording.measurements[0].sigma, Eigen::Vector2d(10.0, 3.0));
+  std::vector<double> velocity;
+  for (std::size_t k = 0; k < recording.measurements.size(); ++k)
+    velocity.push_back(recording.measurements[k].z(1) - recording.truth[0].x[k](1));
+  EXPECT_TRUE(variance_fits(moments(errors(recording)).variance, 100.0, velocity.size()));
+  EXPECT_TRUE(variance_fits(moments(velocity).variance, 9.0, velocity.size()));
+  EXPECT_FALSE(variance_fits(moments(velocity).variance, 10.0, velocity.size()));
+}
+
 TEST(LineScenario, FamilyDrawsOnceForEachRun) {
   LineParameters parameters = moving_target();
   parameters.velocity_mps = Distribution(Distribution::Kind::uniform, {-400.0, 400.0});
@@ -127,6 +166,14 @@ TEST(LineScenario, KeysAreChecked) {
   EXPECT_THAT(error_of(head + target + "[sensor]\nposition_sigma_m = 1\nposition_variance_m2 = 1\n"),
               HasSubstr("one of two keys"));
   EXPECT_THAT(error_of(head + target + "[sensor]\nposition_sigma_m = -1\n"), HasSubstr("sensor.position_sigma_m"));
+  const std::string mixed = head + target + "[sensor]\nposition_sigma_m = 1\nmixture = ";
+  EXPECT_EQ(error_of(mixed + "{ shares = [0.6, 0.4], variance_factors = [1.5, 0.2] }\n"), "no error");
+  EXPECT_THAT(error_of(mixed + "{ shares = [0.6, 0.5], variance_factors = [1.5, 0.2] }\n"),
+              AllOf(HasSubstr("sensor.mixture.shares: do not sum to 1"), HasSubstr("probabilities")));
+  EXPECT_THAT(error_of(mixed + "{ shares = [0.6, 0.4], variance_factors = [1.5] }\n"),
+              HasSubstr("sensor.mixture.variance_factors: holds 1 numbers"));
+  EXPECT_THAT(error_of(mixed + "{ shares = [0.6, 0.4], variance_factors = [1.5, 0.0] }\n"),
+              HasSubstr("sensor.mixture.variance_factors: holds 0"));
   EXPECT_THAT(error_of(head + target + "velocty = 1\n[sensor]\nposition_sigma_m = 1\n"),
               AllOf(HasSubstr("target.velocty"), HasSubstr("velocity_mps")));
   EXPECT_THAT(error_of(head + "process_noise_variance = [1, -1]\n" + target), HasSubstr("process_noise_variance"));

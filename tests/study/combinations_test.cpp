@@ -56,6 +56,8 @@ struct MeasurementCase {
 };
 const std::vector<MeasurementCase> kMeasurements{
     {"position_line", R"({ model = "position", sigma_m = 10.0 })", "line", 1, false, false},
+    {"position_velocity", R"({ model = "position_velocity", sigma_m = 10.0, velocity_sigma_mps = 2.0 })", "line", 1,
+     false, false},
     {"position", R"({ model = "position", sigma_m = 10.0 })", "plane", 2, false, false},
     {"range_bearing", R"({ model = "range_bearing", range_sigma_m = 10.0, bearing_sigma_deg = 0.1 })", "plane", 2,
      false, false},
@@ -185,6 +187,7 @@ Measurement measure(const MeasurementCase& c, const Eigen::VectorXd& x, int k, d
   m.time_s = k;
   if (c.dimensions == 1) {
     m.z = BoundedVector::Constant(1, x[0] + noise * 10.0 * random.normal());
+    if (c.name == "position_velocity") m.z = Eigen::Vector2d(m.z[0], x[1] + noise * 2.0 * random.normal());
     return m;
   }
   m.sensor =
@@ -268,7 +271,7 @@ TEST(CombinationTable, NoiseThatIsNotTheFiltersIsCaught) {
 // included.
 TEST(CombinationTable, LinearOnesAgree) {
   constexpr double kAgree = 1e-9;
-  for (const MeasurementCase& measurement : {kMeasurements[0], kMeasurements[1]})
+  for (const MeasurementCase& measurement : {kMeasurements[0], kMeasurements[1], kMeasurements[2]})
     for (const Kind& motion : measurement.dimensions == 1 ? kLineMotions : kPlaneMotions) {
       if (motion.name == "turning_target") continue;
       std::vector<std::unique_ptr<Tracker>> trackers;

@@ -4,8 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <fmt/format.h>
+
 #include "tests/support/bearings.hpp"
 #include "tests/support/error_message.hpp"
+#include "truebearing/simulation/line_scenario.hpp"
 #include "truebearing/study/tracker_registry.hpp"
 
 namespace truebearing::filter_trackers_test {
@@ -96,6 +100,63 @@ TEST(RangeBankMaker, RefusesWhatMakesNoBank) {
   const std::string course =
       "start = { kind = \"range\", guess = true, course = { from_bearing_deg = 180, sigma_deg = 50 } }\n";
   EXPECT_THAT(refusal(bank + course + "ranges = 6\nvelocity_cells = 8\n"), HasSubstr("beside a course"));
+}
+
+TEST(PositionTrackers, NeedNotBelieveWhatMeasurementsReport) {
+  const std::string text =
+      "motion = { model = \"constant_velocity\", noise = \"continuous\", q_m2ps3 = 1.0 }\n"
+      "start = { kind = \"prior\", x = [0.0, 0.0], variance = [4.0, 1.0] }\n"
+      "measurement = { model = \"position\", sigma_m = 2.0";
+  Measurement seen{
+      .time_s = 0.0, .z = BoundedVector::Constant(1, 1.0), .sigma = BoundedVector::Constant(1, 1.0), .sensor = {}};
+  EXPECT_NEAR(make(text + " }\n", "kalman")->step(seen)[0].x[0], 0.8, 1e-12);
+  EXPECT_NEAR(make(text + ", reported = true }\n", "kalman")->step(seen)[0].x[0], 0.8, 1e-12);
+  EXPECT_NEAR(make(text + ", reported = false }\n", "kalman")->step(seen)[0].x[0], 0.5, 1e-12);
+}
+
+// A multiple model whose modes differ in their noise alone, each entered with its share.
+std::string noise_modes(double loud, double quiet) {
+  return fmt::format(
+      "modes = [ {{ {0}, sigma_factor = {1} }}, {{ {0}, sigma_factor = {2} }} ]\n"
+      "transition = {{ matrix = [0.6, 0.4, 0.6, 0.4], period_s = 1.0 }}\ninitial = [0.6, 0.4]\n",
+      "model = \"constant_velocity\", noise = \"fixed\", variance = [0.0, 1e-4], period_s = 1.0", loud, quiet);
+}
+
+const std::string kPrior = "start = { kind = \"prior\", x = [0.0, 1.0], variance = [1.0, 0.01] }\n";
+
+TEST(NoiseModes, OfOneFactorAreAFilterOfThatNoise) {
+  const auto modes =
+      make(noise_modes(2.0, 2.0) + kPrior + "measurement = { model = \"position\", sigma_m = 1.5 }\n", "imm");
+  const auto filter =
+      make("motion = { model = \"constant_velocity\", noise = \"fixed\", variance = [0.0, 1e-4], period_s = 1.0 }\n" +
+               kPrior + "measurement = { model = \"position\", sigma_m = 3.0 }\n",
+           "kalman");
+  for (int k = 1; k <= 20; ++k) {
+    const Measurement seen{
+        .time_s = double(k), .z = BoundedVector::Constant(1, k + std::sin(3.0 * k)), .sigma = {}, .sensor = {}};
+    const StepRecord a = modes->step(seen)[0], b = filter->step(seen)[0];
+    EXPECT_TRUE(a.x.isApprox(b.x, 1e-12)) << k;
+    EXPECT_TRUE(a.P.isApprox(b.P, 1e-12)) << k;
+  }
+}
+
+TEST(NoiseModes, FollowATargetThroughAMixture) {
+  LineParameters parameters;
+  parameters.steps = 4000;
+  parameters.process_noise_variance << 0.0, 1e-4;
+  parameters.velocity_mps = 1.0;
+  parameters.mixture = NoiseMixture{{0.6, 0.4}, {1.5625, 0.15625}};
+  const Recording recording = LineScenario(parameters).simulate({});
+  const std::string sensor = "measurement = { model = \"position\", sigma_m = 1.0 }\n";
+  const auto mse = [&](const std::string& modes) {
+    const auto tracker = make(modes + kPrior + sensor, "imm");
+    double sum = 0.0;
+    for (std::size_t k = 0; k < recording.measurements.size(); ++k)
+      sum += std::pow(tracker->step(recording.measurements[k])[0].x[0] - recording.truth[0].x[k][0], 2);
+    return sum / static_cast<double>(recording.measurements.size());
+  };
+  EXPECT_LT(mse(noise_modes(1.25, 0.3953)), 0.85 * mse(noise_modes(1.0, 1.0)))
+      << "against the filter of the average variance";
 }
 
 }  // namespace

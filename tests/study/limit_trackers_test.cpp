@@ -84,6 +84,14 @@ TEST(ParticleLimitKind, RefusesWhatItDoesNotModel) {
   EXPECT_THAT(refusal(study_of("plane", kSensor, "partcles = 7\n")), HasSubstr("did you mean \"particles\""));
 }
 
+TEST(ParticleLimitKind, KnowsNoFlightsOfIntervals) {
+  EXPECT_THAT(refusal("name = \"small\"\n[scenario]\nkind = \"planar_flight\"\noutput = \"plane\"\nperiod_s = 1.0\n"
+                      "steps = 9\n[scenario.flight]\nspeed_mps = 50.0\nintervals = 2\ninterval_s = 4.0\n"
+                      "along_mps2 = 0.0\nacross_mps2 = 5.0\n" +
+                      kSensor + kLimit),
+              AllOf(HasSubstr("does not know flights of intervals"), HasSubstr("legs and manoeuvres")));
+}
+
 TEST(ParticleLimitKind, WantsAScenario) {
   const SharedTable table = parse_toml("particles = 100", "study.toml");
   TableReader reader(table, "study.toml", "trackers.mine");

@@ -69,6 +69,17 @@ void expect_honest(const Errors& errors) {
   EXPECT_GT(errors.nees / runs, 1.5);
 }
 
+TEST(ConvertedSensor, MayBelieveOneCovarianceEverywhere) {
+  ConvertedSensor sensor = kSensor;
+  sensor.position_sigma_m = 30.0;
+  for (const double range_m : {100.0, kRange_m}) {
+    const Measurement seen{.time_s = 0.0, .z = Eigen::Vector2d(range_m, 0.3), .sigma = {}, .sensor = {}};
+    EXPECT_EQ(sensor.fix(seen).R, Eigen::Matrix2d(900.0 * Eigen::Matrix2d::Identity()));
+    EXPECT_EQ(sensor.model(seen, {kPrior.x, kPrior.P}).R(), sensor.fix(seen).R);
+    EXPECT_EQ(sensor.value(seen), kSensor.value(seen)) << "what is measured stays";
+  }
+}
+
 TEST(ConvertedSensor, DoesNotLengthenRanges) {
   FilterTrackerOf<KalmanFilter<4>, Motion, ConvertedSensor> tracker(plane_space(), kMotion, kSensor, kPrior);
   expect_honest(errors_of(tracker));

@@ -2,10 +2,41 @@
 #include "truebearing/simulation/line_scenario.hpp"
 
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "truebearing/core/constants.hpp"
+#include "truebearing/measurement/position_velocity.hpp"
 
 namespace truebearing {
+namespace {
+
+// Of a standard deviation.
+double drawn_factor(const NoiseMixture& mixture, RandomStream& stream) {
+  double left = stream.uniform();
+  std::size_t component = 0;
+  while (component + 1 < mixture.shares.size() && left >= mixture.shares[component])
+    left -= mixture.shares[component++];
+  return std::sqrt(mixture.variance_factors[component]);
+}
+
+// { shares = [...], variance_factors = [...] }
+NoiseMixture read_mixture(TableReader table) {
+  constexpr double kRounding = 1e-6;
+  NoiseMixture mixture;
+  mixture.shares = table.numbers("shares", -1, {0.0, 1.0});
+  mixture.variance_factors = table.numbers("variance_factors", static_cast<int>(mixture.shares.size()), kPositive);
+  if (std::abs(std::accumulate(mixture.shares.begin(), mixture.shares.end(), 0.0) - 1.0) > kRounding)
+    throw table.error("shares", "do not sum to 1", "probabilities");
+  table.finish();
+  return mixture;
+}
+
+}  // namespace
+
+std::optional<Measured> LineScenario::measured() const {
+  return parameters_.velocity_sigma_mps ? PositionVelocity<>::measured() : Measured::position(1);
+}
 
 Recording LineScenario::simulate(const RunKey& key) const {
   constexpr double kRounding = 1e-9;  // of a gap that is one period long
@@ -19,6 +50,9 @@ Recording LineScenario::simulate(const RunKey& key) const {
   const double scale = parameters_.process_noise_scale.draw(scenario);
   const double noise = parameters_.noise.draw(scenario);
   const double sigma_m = parameters_.noise_is_variance ? std::sqrt(noise) : noise;
+  const Eigen::Index components = parameters_.velocity_sigma_mps ? 2 : 1;
+  BoundedVector its_sigma = BoundedVector::Constant(components, sigma_m);  // of a measurement
+  if (parameters_.velocity_sigma_mps) its_sigma[1] = parameters_.velocity_sigma_mps->draw(scenario);
 
   Recording recording;
   recording.measured = measured()->components;
@@ -34,9 +68,11 @@ Recording LineScenario::simulate(const RunKey& key) const {
     for (int i = 0; i < 2; ++i) x(i) += sigma(i) * process.normal();
     Measurement taken;
     taken.time_s = time_s;
-    taken.z = BoundedVector::Constant(1, x(0) + sigma_m * measurement.normal());
+    if (parameters_.mixture) its_sigma[0] = sigma_m * drawn_factor(*parameters_.mixture, measurement);
+    taken.z = x.head(components);
+    for (Eigen::Index i = 0; i < components; ++i) taken.z[i] += its_sigma[i] * measurement.normal();
     if (!look.seen) taken.z.setConstant(kNaN);
-    if (parameters_.reported) taken.sigma = BoundedVector::Constant(1, sigma_m);
+    if (parameters_.reported) taken.sigma = its_sigma;
     if (!parameters_.looks.keeps(look)) continue;
     recording.counts.missing += !look.seen;
     recording.measurements.push_back(std::move(taken));
@@ -66,6 +102,9 @@ std::unique_ptr<Scenario> read_line_scenario(TableReader& table) {
     throw sensor.error("", "needs one of two keys", "position_sigma_m or position_variance_m2");
   parameters.noise =
       read_distribution(sensor, parameters.noise_is_variance ? "position_variance_m2" : "position_sigma_m", kPositive);
+  if (sensor.has("velocity_sigma_mps"))
+    parameters.velocity_sigma_mps = read_distribution(sensor, "velocity_sigma_mps", kPositive);
+  if (auto mixture = sensor.table_if_present("mixture")) parameters.mixture = read_mixture(std::move(*mixture));
   parameters.reported = sensor.boolean_or("reported", false);
   sensor.finish();
   parameters.looks = read_look_schedule(table);

@@ -75,9 +75,13 @@ FlownTrack PlanarFlight::fly(std::span<const double> times_s, RandomStream& stre
   constexpr double kRounding = 1e-9;  // of times, in sub-steps
   double speed = speed_mps.draw(stream);
   double course_rad = stream.uniform(-kPi, kPi);
-  Programme programme(*this, stream);
-
   const auto samples = static_cast<Eigen::Index>(times_s.size());
+  if (intervals) {
+    FlownTrack track{{}, Eigen::VectorXd::Zero(samples)};
+    track.states = intervals->fly(times_s, speed * direction(course_rad), stream, track.end_s);
+    return track;
+  }
+  Programme programme(*this, stream);
   FlownTrack track{Eigen::Matrix4Xd(4, samples), Eigen::VectorXd(samples)};
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
   for (Eigen::Index k = 0; k < samples; ++k) {

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // A flight in the East-North plane: straight legs and manoeuvres in alternation. A manoeuvre is a turn at constant
 // speed or an acceleration along the track; its rate rises and falls linearly at both ends (roll-in). Positions follow
-// exact arcs over sub-steps of at most .1 s.
+// exact arcs over sub-steps of at most .1 s. With `intervals` it is a flight of these instead (flight_intervals.hpp).
 #pragma once
 
 #include <Eigen/Core>
 #include <optional>
 #include <span>
 
+#include "truebearing/core/constants.hpp"
 #include "truebearing/core/random.hpp"
 #include "truebearing/simulation/distribution.hpp"
+#include "truebearing/simulation/flight_intervals.hpp"
 
 namespace truebearing {
 
@@ -17,6 +19,7 @@ namespace truebearing {
 struct FlownTrack {
   Eigen::Matrix4Xd states;            ///< columns [east_m, north_m, east_mps, north_mps]
   Eigen::VectorXd since_manoeuvre_s;  ///< time since a manoeuvre was under way: 0 in one, infinity before the first
+  double end_s = kInfinity;           ///< of the flight
 };
 
 struct PlanarFlight {
@@ -34,6 +37,8 @@ struct PlanarFlight {
   double lowest_speed_mps = 0.0;         ///< an acceleration ends at these speeds
   double highest_speed_mps = 1e9;
   double quiet_share = 0.0;  ///< probability that a flight has no manoeuvre
+
+  std::optional<FlightIntervals> intervals;  ///< in place of all but the speed, which the first begins with
 
   /// At times that ascend from 0, from the origin on a random course.
   FlownTrack fly(std::span<const double> times_s, RandomStream& stream) const;

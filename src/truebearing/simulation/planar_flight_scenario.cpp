@@ -31,8 +31,13 @@ struct PlaceSite {
   Eigen::Vector2d operator()(const SiteAtRange& placement) const {
     const double range_m = placement.range_m.draw(stream);
     const double bearing_rad = stream.uniform(-kPi, kPi);
-    return track.col(placement.at_step - 1).head<2>() -
-           range_m * Eigen::Vector2d(std::sin(bearing_rad), std::cos(bearing_rad));
+    const Eigen::Index at = std::min<Eigen::Index>(placement.at_step, track.cols()) - 1;
+    return track.col(at).head<2>() - range_m * Eigen::Vector2d(std::sin(bearing_rad), std::cos(bearing_rad));
+  }
+
+  Eigen::Vector2d operator()(const SiteFromStart& placement) const {
+    const double east_m = placement.east_m.draw(stream), north_m = placement.north_m.draw(stream);
+    return track.col(0).head<2>() - Eigen::Vector2d(east_m, north_m);
   }
 };
 
@@ -73,7 +78,8 @@ PlanarFlightScenario::SeenFlight PlanarFlightScenario::fly(const std::vector<Loo
     return static_cast<Eigen::Index>(after - times_s.begin());
   };
 
-  const auto count = static_cast<Eigen::Index>(looks.size());
+  Eigen::Index count = 0;  // until the flight ends
+  for (const Look& look : looks) count += flight_time(look) <= track.end_s + kRounding * period_s;
   SeenFlight seen{Eigen::Matrix4Xd(4, count), Eigen::Matrix2Xd(2, count), Eigen::VectorXd(count)};
   for (Eigen::Index k = 0; k < count; ++k) {
     const Eigen::Index at = column(flight_time(looks[static_cast<std::size_t>(k)]));
@@ -117,7 +123,7 @@ Recording PlanarFlightScenario::simulate(const RunKey& key) const {
   recording.truth_space = &truth_space();
   recording.truth.resize(1);
   if (parameters_.quiet_after_s) recording.phases = {"manoeuvre", "quiet"};
-  for (std::size_t k = 0; k < looks.size(); ++k) {
+  for (std::size_t k = 0; k < static_cast<std::size_t>(flown.cols()); ++k) {
     const auto column = static_cast<Eigen::Index>(k);
     Eigen::Vector4d state;
     state << recorded.col(column), flown.col(column).tail<2>();
@@ -146,6 +152,16 @@ PlanarFlight read_flight(TableReader flight) {
 
   PlanarFlight parameters;
   parameters.speed_mps = read_distribution(flight, "speed_mps", kPositive);
+  if (flight.has("intervals")) {
+    FlightIntervals& intervals = parameters.intervals.emplace();
+    intervals.count = read_distribution(flight, "intervals", {1.0, 1e4});
+    intervals.interval_s = read_distribution(flight, "interval_s", kDuration);
+    intervals.along_mps2 = read_distribution(flight, "along_mps2");
+    intervals.across_mps2 = read_distribution(flight, "across_mps2");
+    intervals.hold_s = flight.number_or("hold_s", 1.0, kDuration);
+    flight.finish();
+    return parameters;
+  }
   if (flight.has("first_leg_s")) parameters.first_leg_s = read_distribution(flight, "first_leg_s", kNonNegative);
   parameters.leg_s = read_distribution(flight, "leg_s", kDuration);
   parameters.turn_s = read_distribution(flight, "turn_s", kDuration);
@@ -163,8 +179,13 @@ PlanarFlight read_flight(TableReader flight) {
   return parameters;
 }
 
-std::variant<SiteAtStart, SiteBesideTrack, SiteAtRange> read_site(std::optional<TableReader> site, int steps) {
+Site read_site(std::optional<TableReader> site, int steps) {
   if (!site) return SiteAtStart{};
+  if (site->has("start_east_m")) {
+    const SiteFromStart placement{read_distribution(*site, "start_east_m"), read_distribution(*site, "start_north_m")};
+    site->finish();
+    return placement;
+  }
   if (site->has("range_m")) {
     const SiteAtRange placement{read_distribution(*site, "range_m", kNonNegative),
                                 static_cast<int>(site->integer_or("at_step", 1, 1, steps))};

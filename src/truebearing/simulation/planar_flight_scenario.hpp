@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A flight in the plane, seen from a site: as ground range from the site (output "range": line space, range and its
 // rate), as East and North from the site (output "plane"), or as range and bearing from it (output "range_bearing").
-// The site is placed by one of two rules: [site] closest_m puts it off a random point of the track, square to the
+// The site is placed by one of three rules: [site] closest_m puts it off a random point of the track, square to the
 // velocity there, at the distance drawn (another part of the track may pass nearer); [site] range_m puts it at that
-// range and a uniform bearing from the target's place at step at_step. Without [site] it is where the flight begins.
+// range and a uniform bearing from the target's place at step at_step; [site] start_east_m and start_north_m put it where
+// the flight begins so far East and North of it. Without [site] it is where the flight begins.
 //
 // With [jitter] the true and the measured position are those that a recorder would have kept, since recorded tracks are
 // scored against recorded positions. The true velocity, and with it the range rate, is that of the flight itself.
@@ -30,18 +31,22 @@ struct SiteBesideTrack {
 };
 struct SiteAtRange {
   Distribution range_m = 10000.0;
-  int at_step = 1;  ///< counted from 1
+  int at_step = 1;  ///< counted from 1; the last where the flight ends before
+};
+struct SiteFromStart {
+  Distribution east_m = 0.0, north_m = 0.0;  ///< of the flight's beginning, as seen from the site
 };
 struct SiteAtStart {};
+using Site = std::variant<SiteAtStart, SiteBesideTrack, SiteAtRange, SiteFromStart>;
 
 struct PlanarFlightParameters {
   double period_s = 1.0;
-  int steps = 1;
-  PlanarFlight flight;                                           ///< [flight]
-  std::variant<SiteAtStart, SiteBesideTrack, SiteAtRange> site;  ///< [site]
-  std::optional<RecorderJitter> jitter;                          ///< [jitter]
-  PlanarSensor sensor;                                           ///< [sensor]
-  LookSchedule looks;                                            ///< [looks]
+  int steps = 1;                         ///< at most: a flight may end before
+  PlanarFlight flight;                   ///< [flight]
+  Site site;                             ///< [site]
+  std::optional<RecorderJitter> jitter;  ///< [jitter]
+  PlanarSensor sensor;                   ///< [sensor]
+  LookSchedule looks;                    ///< [looks]
   /// Where given, steps are told apart for the report: "quiet" longer than this after a manoeuvre, else "manoeuvre".
   std::optional<double> quiet_after_s;
 };

@@ -10,6 +10,7 @@
 
 #include "truebearing/filter/filter_kinds.hpp"
 #include "truebearing/filter/interacting_multiple_model.hpp"
+#include "truebearing/filter/scaled_noise.hpp"
 #include "truebearing/study/filter_configuration.hpp"
 #include "truebearing/study/measurement_kinds.hpp"
 #include "truebearing/study/motion_kinds.hpp"
@@ -93,11 +94,15 @@ std::unique_ptr<Tracker> make_log_polar_tracker(TableReader& table) {
 
 std::unique_ptr<Tracker> make_multiple_model_tracker(TableReader& table) {
   MeasurementChoice measurement = read_measurement(table);
-  const AnyMotions motions = read_modes(table, read_layout(table, measurement));
-  const MarkovChain chain = read_chain(table, static_cast<int>(motions.size()));
+  const std::vector<ModeChoice> choices = read_modes(table, read_layout(table, measurement));
+  const MarkovChain chain = read_chain(table, static_cast<int>(choices.size()));
   const FilterKind filter = read_filter(table, measurement, false, {"kalman", "unscented", "modified_gain"});
   InteractingMultipleModel::Modes modes;
-  for (const auto& motion : motions) modes.push_back(state_under(table, filter, motion));
+  for (const ModeChoice& choice : choices) {
+    modes.push_back(state_under(table, filter, choice.motion));
+    if (choice.sigma_factor != 1.0)
+      modes.back() = std::make_unique<ScaledNoise>(std::move(modes.back()), choice.sigma_factor);
+  }
   return filter_tracker(table, std::make_unique<InteractingMultipleModel>(std::move(modes), chain),
                         std::move(measurement));
 }

@@ -40,6 +40,9 @@ std::unique_ptr<Tracker> make_particle_limit(TableReader& table, const Scenario&
     throw table.error("kind", "is \"particle_limit\", which knows no family but that of planar flights",
                       "a scenario of kind \"planar_flight\"");
   const PlanarFlightParameters& family = flights->parameters();
+  if (family.flight.intervals)
+    throw table.error("kind", "is \"particle_limit\", which does not know flights of intervals",
+                      "a scenario whose flights are legs and manoeuvres");
   ParticleLimitOptions options;
   options.flight = family.flight;
   options.particles = static_cast<int>(table.integer_or("particles", options.particles, 100, 1'000'000));

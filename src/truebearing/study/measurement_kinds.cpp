@@ -12,6 +12,7 @@
 #include "truebearing/tracker/lorenz_sensor.hpp"
 #include "truebearing/tracker/polar_sensor.hpp"
 #include "truebearing/tracker/position_sensor.hpp"
+#include "truebearing/tracker/position_velocity_sensor.hpp"
 #include "truebearing/tracker/range_bearing_rate_sensor.hpp"
 
 namespace truebearing {
@@ -38,8 +39,16 @@ double read_position_sigma(TableReader& table) {
 
 std::unique_ptr<AnySensor> read_position(const Reading& reading) {
   const double sigma_m = read_position_sigma(reading.table), factor = read_factor(reading);
-  if (reading.space == line_space()) return sensor_of(PositionSensor<1>{PositionSensor<1>::Sigma(sigma_m), factor});
-  return sensor_of(PositionSensor<2>{{sigma_m, sigma_m}, factor});
+  const bool reported = reading.table.boolean_or("reported", true);
+  if (reading.space == line_space())
+    return sensor_of(PositionSensor<1>{PositionSensor<1>::Sigma(sigma_m), factor, reported});
+  return sensor_of(PositionSensor<2>{{sigma_m, sigma_m}, factor, reported});
+}
+
+std::unique_ptr<AnySensor> read_position_velocity(const Reading& reading) {
+  const double sigma_m = reading.table.number("sigma_m", kPositive);
+  const double sigma_mps = reading.table.number("velocity_sigma_mps", kPositive);
+  return sensor_of(PositionVelocitySensor{{sigma_m, sigma_mps}, read_factor(reading)});
 }
 
 PolarSensor read_polar(const Reading& reading) {
@@ -59,7 +68,10 @@ std::unique_ptr<AnySensor> read_range_bearing(const Reading& reading) {
 }
 
 std::unique_ptr<AnySensor> read_converted(const Reading& reading) {
-  return sensor_of(ConvertedSensor{read_polar(reading)});
+  ConvertedSensor sensor{read_polar(reading)};
+  if (reading.table.has("position_sigma_m"))
+    sensor.position_sigma_m = sensor.polar.sigma_factor * reading.table.number("position_sigma_m", kPositive);
+  return sensor_of(sensor);
 }
 
 std::unique_ptr<AnySensor> read_range_bearing_rate(const Reading& reading) {
@@ -111,6 +123,7 @@ struct MeasurementKind {
 const std::vector<MeasurementKind>& kinds() {
   static const std::vector<MeasurementKind> the_kinds{
       {"position", {"line", "plane"}, read_position},
+      {"position_velocity", {"line"}, read_position_velocity},
       {"range_bearing", {"plane"}, read_range_bearing},
       {"converted_range_bearing", {"plane"}, read_converted},
       {"range_bearing_rate", {"plane"}, read_range_bearing_rate},

@@ -144,17 +144,18 @@ constexpr MotionKind kKinds[] = {
 };
 
 // One table of `modes` is one mode, or with turn_rates_degps one for each rate.
-void read_mode(TableReader& mode, const MotionLayout& layout, AnyMotions& motions) {
+void read_mode(TableReader& mode, const MotionLayout& layout, std::vector<ModeChoice>& modes) {
+  const double sigma_factor = mode.number_or("sigma_factor", 1.0, kPositive);
   if (layout.is_lorenz || layout.dimensions == 1 || !mode.has("turn_rates_degps")) {
     if ((*mode.raw())["model"].value_or(std::string()) == "learned")
       throw mode.error("model", "is \"learned\", which is taught as the only motion of a tracker", "another model");
-    motions.push_back(read_motion(mode, layout));
+    modes.push_back({read_motion(mode, layout), sigma_factor});
     return;
   }
   mode.choice("model", {"coordinated_turn"});
   const AnyNoise<4> noise = read_noise<2>(mode, layout.process_noise_factor);
   for (const double rate_degps : mode.numbers("turn_rates_degps", -1, kTurnRate_degps))
-    motions.push_back(coordinated_turn(noise, rate_degps, layout));
+    modes.push_back({coordinated_turn(noise, rate_degps, layout), sigma_factor});
   mode.finish();
 }
 
@@ -174,19 +175,19 @@ std::shared_ptr<const AnyMotion> read_motion(TableReader motion, const MotionLay
   throw motion.error("model", "is \"" + model + "\"");
 }
 
-AnyMotions read_modes(TableReader& tracker, const MotionLayout& layout) {
-  AnyMotions motions;
-  for (TableReader& mode : tracker.tables("modes")) read_mode(mode, layout, motions);
-  if (motions.size() < 2 || motions.size() > static_cast<std::size_t>(kMaxModes))
-    throw tracker.error("modes", fmt::format("makes {} of them", motions.size()), fmt::format("2 to {}", kMaxModes));
+std::vector<ModeChoice> read_modes(TableReader& tracker, const MotionLayout& layout) {
+  std::vector<ModeChoice> modes;
+  for (TableReader& mode : tracker.tables("modes")) read_mode(mode, layout, modes);
+  if (modes.size() < 2 || modes.size() > static_cast<std::size_t>(kMaxModes))
+    throw tracker.error("modes", fmt::format("makes {} of them", modes.size()), fmt::format("2 to {}", kMaxModes));
   std::string_view rest;
-  for (const auto& motion : motions) {
+  for (const auto& [motion, sigma_factor] : modes) {
     if (!motion->rest().empty() && !rest.empty() && motion->rest() != rest)
       throw tracker.error("modes", fmt::format("mix {} and {}, which are no parts of one state", rest, motion->rest()),
                           "one of the two beside constant velocity and coordinated turns");
     if (!motion->rest().empty()) rest = motion->rest();
   }
-  return motions;
+  return modes;
 }
 
 }  // namespace truebearing

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "truebearing/filter/filter_kinds.hpp"
 #include "truebearing/io/table_reader.hpp"
@@ -23,8 +24,14 @@ struct MotionLayout {
 /// { model, ... }: asks for all keys of `motion` and finishes it. Throws InputError.
 std::shared_ptr<const AnyMotion> read_motion(TableReader motion, const MotionLayout& layout);
 
-/// [[modes]]: motions, one each, or with turn_rates_degps one for each rate; 2 to kMaxModes of them. Throws InputError
-/// also where two of them have no state that both begin.
-AnyMotions read_modes(TableReader& tracker, const MotionLayout& layout);
+/// Of a multiple model.
+struct ModeChoice {
+  std::shared_ptr<const AnyMotion> motion;
+  double sigma_factor = 1.0;  ///< of the standard deviations of what is measured
+};
+
+/// [[modes]]: motions, one each, or with turn_rates_degps one for each rate, with a sigma_factor; 2 to kMaxModes of them.
+/// Throws InputError also where two of them have no state that both begin.
+std::vector<ModeChoice> read_modes(TableReader& tracker, const MotionLayout& layout);
 
 }  // namespace truebearing

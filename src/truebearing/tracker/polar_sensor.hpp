@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "truebearing/measurement/cartesian_position.hpp"
 #include "truebearing/measurement/measured.hpp"
@@ -48,10 +49,13 @@ struct ConvertedSensor {
   static constexpr bool kMeasuresPosition = true;
 
   PolarSensor polar;
+  /// Where given, R is this squared in both axes, wherever the target is: of filters that are told x and y and no more.
+  std::optional<double> position_sigma_m = std::nullopt;
 
   /// R is that of the expected place where it is known better across the sight than the measurement tells it, else that
   /// of the measured one.
   Model model(const Measurement& measurement, const Prediction& expected) const {
+    if (position_sigma_m) return {one_R_m2()};
     const RangeBearing<> seen = polar.model(measurement);
     const Eigen::Vector2d offset_m = expected.x.head<2>() - seen.site_m;
     const Eigen::Matrix2d R = converted_covariance(offset_m, seen.sigma_range_m, seen.sigma_bearing_rad);
@@ -61,7 +65,14 @@ struct ConvertedSensor {
   }
   Eigen::Vector2d value(const Measurement& measurement) const { return polar.converted(measurement).position_m; }
   Measured measured() const { return Measured::range_bearing(); }
-  PositionFix fix(const Measurement& measurement) const { return polar.fix(measurement); }
+  PositionFix fix(const Measurement& measurement) const {
+    PositionFix fix = polar.fix(measurement);
+    if (position_sigma_m) fix.R = one_R_m2();
+    return fix;
+  }
+
+ private:
+  Eigen::Matrix2d one_R_m2() const { return *position_sigma_m * *position_sigma_m * Eigen::Matrix2d::Identity(); }
 };
 
 }  // namespace truebearing

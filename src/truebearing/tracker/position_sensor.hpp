@@ -9,8 +9,8 @@
 
 namespace truebearing {
 
-/// Measures the position components. The measurement's own standard deviations hold where it carries them, else
-/// `sigma_m`; either is multiplied by `sigma_factor`.
+/// Measures the position components. The measurement's own standard deviations hold where it carries them and `reported`
+/// says so, else `sigma_m`; either is multiplied by `sigma_factor`.
 template <int D>
 struct PositionSensor {
   using Model = Position<D>;
@@ -19,10 +19,11 @@ struct PositionSensor {
 
   Sigma sigma_m = Sigma::Ones();
   double sigma_factor = 1.0;
+  bool reported = true;
 
   Model model(const Measurement& measurement) const {
-    return Model{measurement.sigma.size() == D ? Sigma(sigma_factor * measurement.sigma)
-                                               : Sigma(sigma_factor * sigma_m)};
+    const bool is_told = reported && measurement.sigma.size() == D;
+    return Model{sigma_factor * (is_told ? Sigma(measurement.sigma) : sigma_m)};
   }
   Sigma value(const Measurement& measurement) const { return measurement.z; }
   Measured measured() const { return Measured::position(D); }

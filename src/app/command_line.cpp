@@ -2,19 +2,24 @@
 #include "app/command_line.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <iostream>
 #include <new>
+#include <string>
 #include <system_error>
 #include <unistd.h>
+#include <vector>
 
 #include "app/data_folder.hpp"
 #include "app/output.hpp"
 #include "app/subcommands.hpp"
 #include "truebearing/core/error.hpp"
+#include "truebearing/core/printable.hpp"
+#include "truebearing/core/suggestion.hpp"
 
 namespace truebearing {
 namespace {
@@ -29,6 +34,17 @@ void occupy_standard_streams() {
 int fail(const std::string& what) {
   say("truebearing: " + what);
   return 1;
+}
+
+// The first argument where it should be a subcommand and is none.
+std::string unknown_subcommand(const CLI::App& app, int argc, const char* const* argv) {
+  if (argc < 2 || argv[1][0] == '-' || argv[1][0] == '\0') return {};
+  const std::string name = argv[1];
+  std::vector<std::string> names;
+  for (const CLI::App* subcommand : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(subcommand->get_name());
+  if (std::find(names.begin(), names.end(), name) != names.end()) return {};
+  return InputError("command line", as_shown(name) + " is no subcommand", suggestion(name, names)).what();
 }
 
 // Help, the version, or what is wrong with the usage.
@@ -71,6 +87,7 @@ int command_line(int argc, const char* const* argv) {
     if (std::fflush(stdout) != 0) throw InputError("standard output", "cannot be written");
     return 0;
   } catch (const CLI::ParseError& error) {
+    if (const std::string unknown = unknown_subcommand(app, argc, argv); !unknown.empty()) return fail(unknown) + 1;
     return finish(app, error);
   } catch (const InputError& error) {
     return fail(error.what());

@@ -16,6 +16,7 @@
 #include "app/output.hpp"
 #include "app/report_output.hpp"
 #include "app/subcommands.hpp"
+#include "app/terminal.hpp"
 #include "app/track_output.hpp"
 #include "app/track_report.hpp"
 #include "truebearing/array/recorded_array.hpp"
@@ -260,7 +261,7 @@ void finish(const Study& study, const TrackArguments& options, TrackRun& run, co
     if (options.wants_results()) write_log_results(study, options, run, rows, logs);
     return;
   }
-  if (for_people) fmt::print("\n{}", comparison_table(scored->comparison));
+  if (for_people) fmt::print("\n{}", comparison_table(scored->comparison, TableArguments{}.layout()));
   if (!options.wants_results()) return;
   const std::string json = comparison_json(scored->comparison, scored->pictures);
   if (!options.json.empty()) write_output(options.json, json);

@@ -117,7 +117,7 @@ TEST(Program, WorksFromScenarioToRules) {
   const std::string parameters = folder.read("small.parameters.toml"), model = folder.read("small.nfnn.json");
 
   EXPECT_EQ(run(folder, "check small.toml").status, 0);
-  const Outcome rules = run(folder, "rules small.nfnn.json");
+  const Outcome rules = run(folder, "rules small.nfnn.json --sentences");
   EXPECT_EQ(rules.status, 0) << rules.err;
   EXPECT_THAT(rules.out, AllOf(HasSubstr("1. IF"), HasSubstr("4. IF"), HasSubstr("validation")));
 

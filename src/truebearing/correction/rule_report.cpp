@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <numeric>
 #include <utility>
+#include <vector>
 
 namespace truebearing {
 namespace {
@@ -20,7 +21,8 @@ std::string amount(double value) {
   return std::abs(value) >= 100.0 ? fmt::format("{:+.0f}", value) : fmt::format("{:+.3g}", value);
 }
 
-// Corrections in words: "+12 m, -3 m/s" on a line; in a turned frame each with its direction.
+}  // namespace
+
 std::string amounts(const CorrectionModel& model, const Eigen::VectorXd& values) {
   const StateSpace& space = space_in(model.design.frame, *model.space);
   std::string text;
@@ -37,7 +39,12 @@ std::string amounts(const CorrectionModel& model, const Eigen::VectorXd& values)
   return text;
 }
 
-}  // namespace
+std::string conditions_of(const ReportedRule& rule, const CorrectionModel& model) {
+  std::string conditions;
+  for (std::size_t i = 0; i < rule.terms.size(); ++i)
+    conditions += fmt::format("{}{} is {}", i == 0 ? "" : " AND ", describe(model.design.features[i]), rule.terms[i]);
+  return conditions;
+}
 
 std::string term_word(double u, int parity) {
   if (parity < 0) {
@@ -49,7 +56,7 @@ std::string term_word(double u, int parity) {
   return u < -1.5 ? "VERY SMALL" : u < -0.5 ? "SMALL" : u <= 0.5 ? "MEDIUM" : u <= 1.5 ? "LARGE" : "VERY LARGE";
 }
 
-std::vector<RuleWords> rules_in_words(const CorrectionModel& model) {
+std::vector<ReportedRule> reported_rules(const CorrectionModel& model) {
   const RuleBase& rules = model.rules();
   const FuzzyNetwork::Parameters& parameters = rules.network.parameters();
   std::vector<Eigen::Index> order(static_cast<std::size_t>(rules.network.rules()));
@@ -57,31 +64,34 @@ std::vector<RuleWords> rules_in_words(const CorrectionModel& model) {
   std::stable_sort(order.begin(), order.end(),
                    [&](Eigen::Index a, Eigen::Index b) { return rules.usage[a] > rules.usage[b]; });
 
-  std::vector<RuleWords> words;
+  std::vector<ReportedRule> reported;
   FuzzyNetwork::Strengths phi;
   for (const Eigen::Index rule : order) {
-    std::string conditions;
+    ReportedRule one;
+    one.rule = rule;
     for (std::size_t i = 0; i < model.design.features.size(); ++i)
-      conditions += fmt::format("{}{} is {}", i == 0 ? "" : " AND ", describe(model.design.features[i]),
-                                term_word(parameters.centres(rule, static_cast<Eigen::Index>(i)),
-                                          mirror_parity(model.design.features[i], model.design.frame, *model.space)));
+      one.terms.push_back(term_word(parameters.centres(rule, static_cast<Eigen::Index>(i)),
+                                    mirror_parity(model.design.features[i], model.design.frame, *model.space)));
     const FuzzyNetwork::Inputs centre =
         (parameters.input_mean.array() +
          parameters.centres.row(rule).transpose().array() * parameters.input_scale.array())
             .matrix();
     rules.network.strengths(centre, phi);
-    words.push_back({rule, std::move(conditions), amounts(model, rules.network.output(phi)),
-                     amounts(model, rules.local_mean.row(rule).transpose()), rules.usage[rule]});
+    one.added = rules.network.output(phi);
+    one.taught = rules.local_mean.row(rule).transpose();
+    one.usage = rules.usage[rule];
+    reported.push_back(std::move(one));
   }
-  return words;
+  return reported;
 }
 
 std::string rule_sentences(const CorrectionModel& model) {
   std::string text;
   int number = 0;
-  for (const RuleWords& rule : rules_in_words(model))
-    text += fmt::format("{}. IF {} THEN add {}   (usage {:.1f} %, teacher's mean {})\n", ++number, rule.conditions,
-                        rule.adds, 100.0 * rule.usage, rule.teacher);
+  for (const ReportedRule& rule : reported_rules(model))
+    text += fmt::format("{}. IF {} THEN add {}   (usage {:.1f} %, teacher's mean {})\n", ++number,
+                        conditions_of(rule, model), amounts(model, rule.added), 100.0 * rule.usage,
+                        amounts(model, rule.taught));
   return text;
 }
 

@@ -10,17 +10,22 @@
 
 namespace truebearing {
 
-/// A rule in words, with the numbers that its words round.
-struct RuleWords {
-  Eigen::Index rule = 0;   ///< its place in the model
-  std::string conditions;  ///< "gain in position_m is MEDIUM AND ..."
-  std::string adds;        ///< what the network says at the rule's centre: "+2890 m, +152 m/s"
-  std::string teacher;     ///< what the teacher said on average where the rule was used
-  double usage = 0.0;      ///< mean strength over the training data, in [0, 1]
+/// A rule for a reader.
+struct ReportedRule {
+  Eigen::Index rule = 0;           ///< its place in the model
+  std::vector<std::string> terms;  ///< (d), a word for each feature: term_word()
+  Eigen::VectorXd added;           ///< (n), what the network says at the rule's centre
+  Eigen::VectorXd taught;          ///< (n), the teacher's mean where the rule was used
+  double usage = 0.0;              ///< mean strength over the training data, in [0, 1]
 };
 
-/// All of them, the most used first.
-std::vector<RuleWords> rules_in_words(const CorrectionModel& model);
+/// The most used first.
+std::vector<ReportedRule> reported_rules(const CorrectionModel& model);
+
+/// "gain in position_m is MEDIUM AND ..."
+std::string conditions_of(const ReportedRule& rule, const CorrectionModel& model);
+/// Outputs of the network (n) in words: "+2890 m, +152 m/s" on a line; in a turned frame each with its direction.
+std::string amounts(const CorrectionModel& model, const Eigen::VectorXd& outputs);
 
 /// One sentence per rule, the most used first:
 /// `1. IF gain in position_m is MEDIUM AND ... THEN add +2890 m, +152 m/s   (usage 12.1 %, teacher's mean +2710 m, +140

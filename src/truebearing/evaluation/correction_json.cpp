@@ -27,16 +27,17 @@ Json feature_json(const CorrectionModel& model, Eigen::Index i, const Correction
 }
 
 // Terms in the units of the features.
-Json rule_json(const RuleWords& words, const FuzzyNetwork::Parameters& p, const CorrectionDetails::Rule& rule) {
+Json rule_json(const CorrectionModel& model, const ReportedRule& rule, const CorrectionDetails::Rule& seen) {
+  const FuzzyNetwork::Parameters& p = model.rules().network.parameters();
   std::vector<double> centre, width;
   for (Eigen::Index i = 0; i < p.centres.cols(); ++i) {
-    centre.push_back(p.input_mean[i] + p.input_scale[i] * p.centres(words.rule, i));
-    width.push_back(p.input_scale[i] * p.widths(words.rule, i));
+    centre.push_back(p.input_mean[i] + p.input_scale[i] * p.centres(rule.rule, i));
+    width.push_back(p.input_scale[i] * p.widths(rule.rule, i));
   }
-  return {{"if", words.conditions},          {"add", words.adds},
-          {"taught", words.teacher},         {"usage", six_digits(words.usage)},
-          {"fired", six_digits(rule.fired)}, {"strongest", six_digits(rule.strongest)},
-          {"centre", six_digits(centre)},    {"width", six_digits(width)}};
+  return {{"if", conditions_of(rule, model)},      {"add", amounts(model, rule.added)},
+          {"taught", amounts(model, rule.taught)}, {"usage", six_digits(rule.usage)},
+          {"fired", six_digits(seen.fired)},       {"strongest", six_digits(seen.strongest)},
+          {"centre", six_digits(centre)},          {"width", six_digits(width)}};
 }
 
 }  // namespace
@@ -70,9 +71,8 @@ Json correction_json(const CorrectionDetails& details) {
     json["features"].push_back(feature_json(model, static_cast<Eigen::Index>(i), details.features[i]));
   if (details.rules.empty()) return json;
   json["rules"] = Json::array();
-  for (const RuleWords& words : rules_in_words(model))
-    json["rules"].push_back(
-        rule_json(words, model.rules().network.parameters(), details.rules[static_cast<std::size_t>(words.rule)]));
+  for (const ReportedRule& rule : reported_rules(model))
+    json["rules"].push_back(rule_json(model, rule, details.rules[static_cast<std::size_t>(rule.rule)]));
   return json;
 }
 

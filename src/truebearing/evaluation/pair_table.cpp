@@ -8,14 +8,15 @@
 
 namespace truebearing {
 
-std::string pair_table(const std::string& heading, const Comparison& comparison, MetricTable table) {
-  std::vector<std::vector<std::string>> rows{{heading, "", "mean", "+-", "in standard errors"}};
+std::string pair_table(const std::string& heading, const Comparison& comparison, MetricTable table,
+                       const TableLayout& layout) {
+  Rows rows{{heading, "", "mean", "+-", "in standard errors"}};
   for (const Comparison::Pair& pair : comparison.pairs)
     for (const PairedDifference& difference : pair.differences)
       if (difference.table == table && !difference.time_s)
         rows.push_back({pair.a + " - " + pair.b, difference.title, figure(difference.mean), figure(difference.se),
                         difference.se > 0.0 ? fmt::format("{:+.1f}", difference.mean / difference.se) : "-"});
-  return rows.size() > 1 ? fmt::format("\n{}", aligned(rows)) : std::string();
+  return rows.size() > 1 ? fmt::format("\n{}", aligned(rows, layout)) : std::string();
 }
 
 }  // namespace truebearing

@@ -150,14 +150,31 @@ std::vector<std::string> heading(const Comparison& comparison) {
   return row;
 }
 
-std::vector<std::string> table_row(const Comparison& comparison, const TrackerSummary& summary) {
+bool is_bound(const Comparison& comparison, const std::string& name) {
+  return std::find(comparison.bounds.begin(), comparison.bounds.end(), name) != comparison.bounds.end();
+}
+
+// With the least RMSE in that quantity of several that are no bounds.
+bool is_best(const Comparison& comparison, const TrackerSummary& summary, const std::string& quantity) {
+  const QuantitySummary* of = summary.quantity(quantity);
+  if (!of || is_bound(comparison, summary.name)) return false;
+  bool has_others = false;
+  for (const TrackerSummary& other : comparison.trackers) {
+    const QuantitySummary* its = other.quantity(quantity);
+    if (&other == &summary || !its || is_bound(comparison, other.name)) continue;
+    has_others = true;
+    if (!(of->rmse <= its->rmse)) return false;
+  }
+  return has_others;
+}
+
+std::vector<std::string> table_row(const Comparison& comparison, const TrackerSummary& summary,
+                                   const TableLayout& layout) {
   const TrackerSummary* plain = comparison.tracker(kPlain);
-  const bool is_bound =
-      std::find(comparison.bounds.begin(), comparison.bounds.end(), summary.name) != comparison.bounds.end();
-  std::vector<std::string> row{is_bound ? summary.name + " (bound)" : summary.name};
+  std::vector<std::string> row{is_bound(comparison, summary.name) ? summary.name + " (bound)" : summary.name};
   for (const QuantitySummary& column : quantities_of(comparison)) {
     const QuantitySummary* quantity = summary.quantity(column.name);
-    row.push_back(quantity ? figure(quantity->rmse) : "-");
+    row.push_back(marked(quantity ? figure(quantity->rmse) : "-", is_best(comparison, summary, column.name), layout));
     row.push_back(quantity ? figure(quantity->rmse_se) : "-");
     if (plain) row.push_back(quantity ? figure(ratio_to(plain, *quantity)) : "-");
     if (const WayToBound way = way_to_bound(comparison)) {
@@ -197,7 +214,7 @@ void add_published(const Comparison& comparison, std::vector<std::vector<std::st
 }
 
 // RMSE by phase, where the scenario tells phases apart.
-std::string phase_table(const Comparison& comparison) {
+std::string phase_table(const Comparison& comparison, const TableLayout& layout) {
   if (comparison.phases.empty()) return {};
   std::vector<std::vector<std::string>> rows(1, {"RMSE by phase"});
   for (const QuantitySummary& column : quantities_of(comparison))
@@ -211,15 +228,19 @@ std::string phase_table(const Comparison& comparison) {
         rows.back().push_back(quantity && i < quantity->phases.size() ? figure(quantity->phases[i].rmse) : "-");
     }
   }
-  return fmt::format("\n{}", aligned(rows));
+  return fmt::format("\n{}", aligned(rows, layout));
 }
 
-std::string tables(const Comparison& comparison) {
+std::string tables(const Comparison& comparison, const TableLayout& layout) {
   std::vector<std::vector<std::string>> rows{heading(comparison)};
-  for (const TrackerSummary& summary : comparison.trackers) rows.push_back(table_row(comparison, summary));
+  for (const TrackerSummary& summary : comparison.trackers) rows.push_back(table_row(comparison, summary, layout));
   add_published(comparison, rows);
-  return aligned(rows) + track_tables(comparison) + phase_table(comparison) + time_tables(comparison) +
-         pair_table("paired, per-run RMSE", comparison, MetricTable::figures);
+  return aligned(rows, layout) + track_tables(comparison, layout) + phase_table(comparison, layout) +
+         time_tables(comparison, layout) + pair_table("paired, per-run RMSE", comparison, MetricTable::figures, layout);
+}
+
+std::string heading_line(const std::string& name, const TableLayout& layout) {
+  return layout.markdown ? name + "\n\n" : name + "\n";
 }
 
 // Where what was published is printed, each source once.
@@ -272,12 +293,12 @@ void add_figures(const Comparison& comparison, Json& json) {
 
 }  // namespace
 
-std::string comparison_table(const Comparison& comparison) {
+std::string comparison_table(const Comparison& comparison, const TableLayout& layout) {
   std::string text = fmt::format("{}: {} runs, seed {}\n\n", comparison.study, comparison.runs, comparison.seed);
   if (comparison.trackers.empty()) return text;
-  for (const auto& [name, set] : comparison.sets) text += name + "\n" + tables(set) + "\n";
-  if (!comparison.sets.empty()) text += "all sets together\n";
-  return text + tables(comparison) + sources(comparison);
+  for (const auto& [name, set] : comparison.sets) text += heading_line(name, layout) + tables(set, layout) + "\n";
+  if (!comparison.sets.empty()) text += heading_line("all sets together", layout);
+  return text + tables(comparison, layout) + sources(comparison);
 }
 
 std::string comparison_json(const Comparison& comparison, const std::vector<RunPicture>& pictures) {

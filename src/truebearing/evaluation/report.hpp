@@ -7,11 +7,12 @@
 
 #include "truebearing/evaluation/comparison.hpp"
 #include "truebearing/evaluation/run_picture.hpp"
+#include "truebearing/evaluation/text_table.hpp"
 
 namespace truebearing {
 
-/// The table that the command line prints.
-std::string comparison_table(const Comparison& comparison);
+/// The tables that the command line prints. Of what is no bound the least RMSE is marked.
+std::string comparison_table(const Comparison& comparison, const TableLayout& layout = {});
 
 /// The results as JSON, indented, with a newline at the end. Byte for byte the same for the same comparison, timings
 /// aside. With the details of the comparison, where it has them, and the pictures of its runs: what a report draws.

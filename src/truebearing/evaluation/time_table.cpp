@@ -12,8 +12,6 @@
 namespace truebearing {
 namespace {
 
-using Rows = std::vector<std::vector<std::string>>;
-
 // Those metrics of all trackers that `belongs` picks, each name once, in the order in which they first come.
 template <typename Belongs>
 std::vector<Metric> kinds(const Comparison& comparison, const Belongs& belongs) {
@@ -122,7 +120,7 @@ Rows timeless_rows(const Comparison& comparison, const std::vector<Metric>& kind
 
 }  // namespace
 
-std::string time_tables(const Comparison& comparison) {
+std::string time_tables(const Comparison& comparison, const TableLayout& layout) {
   std::string text;
   Rows rows;
   std::vector<double> times_s;
@@ -131,15 +129,15 @@ std::string time_tables(const Comparison& comparison) {
     add_block(comparison, kind, rows);
     if (times_s.empty()) times_s = times_of(comparison, kind.name);
   }
-  if (!rows.empty()) text.append("\n").append(aligned(rows));
+  if (!rows.empty()) text.append("\n").append(aligned(rows, layout));
 
   rows.assign(1, {"paired, error norms (standard errors)"});
   for (const double time_s : times_s) rows.back().push_back(fmt::format("{:g} s", time_s));
   add_pairs(comparison, rows);
-  if (rows.size() > 1) text.append("\n").append(aligned(rows));
+  if (rows.size() > 1) text.append("\n").append(aligned(rows, layout));
 
   rows = timeless_rows(comparison, kinds(comparison, [&](const Metric& m) { return !m.time_s && has_place(m); }));
-  return rows.empty() ? text : text.append("\n").append(aligned(rows));
+  return rows.empty() ? text : text.append("\n").append(aligned(rows, layout));
 }
 
 }  // namespace truebearing

@@ -12,8 +12,6 @@
 namespace truebearing {
 namespace {
 
-using Rows = std::vector<std::vector<std::string>>;
-
 const Metric* find(const std::vector<Metric>& metrics, const std::string& name) {
   const auto found = std::find_if(metrics.begin(), metrics.end(), [&](const Metric& m) { return m.name == name; });
   return found == metrics.end() ? nullptr : &*found;
@@ -45,7 +43,7 @@ std::string figure_of(const Metric& metric, double value) {
   return metric.unit.ends_with("^2") && size > 0.0 && size < 0.1 ? fmt::format("{:.4f}", value) : figure(value);
 }
 
-std::string tracker_rows(const Comparison& comparison) {
+std::string tracker_rows(const Comparison& comparison, const TableLayout& layout) {
   const std::vector<Metric> columns = columns_of(comparison);
   if (columns.empty()) return {};
   Rows rows{{"tracks"}};
@@ -65,11 +63,11 @@ std::string tracker_rows(const Comparison& comparison) {
       rows.back().push_back(metric ? figure_of(*metric, metric->se) : "-");
     }
   }
-  return fmt::format("\n{}", aligned(rows));
+  return fmt::format("\n{}", aligned(rows, layout));
 }
 
 // What those cannot fall below.
-std::string bound_rows(const Comparison& comparison) {
+std::string bound_rows(const Comparison& comparison, const TableLayout& layout) {
   if (comparison.angle_bounds.empty()) return {};
   std::vector<Metric> columns;
   for (const AngleBoundSummary& bound : comparison.angle_bounds)
@@ -87,14 +85,14 @@ std::string bound_rows(const Comparison& comparison) {
       rows.back().push_back(metric ? figure_of(*metric, metric->se) : "-");
     }
   }
-  return fmt::format("\n{}", aligned(rows));
+  return fmt::format("\n{}", aligned(rows, layout));
 }
 
 }  // namespace
 
-std::string track_tables(const Comparison& comparison) {
-  return tracker_rows(comparison) + bound_rows(comparison) +
-         pair_table("paired, per-run MSE of runs clean with both", comparison, MetricTable::tracks);
+std::string track_tables(const Comparison& comparison, const TableLayout& layout) {
+  return tracker_rows(comparison, layout) + bound_rows(comparison, layout) +
+         pair_table("paired, per-run MSE of runs clean with both", comparison, MetricTable::tracks, layout);
 }
 
 }  // namespace truebearing

@@ -59,6 +59,8 @@ class Study {
 
   /// The tuned parameters in place of those read from parameters_path().
   void set_parameters(ParametersFile parameters) { parameters_ = std::move(parameters); }
+  /// Gives every tracker a row, also those with `show = false`.
+  void show_all();
   const std::optional<ParametersFile>& parameters() const { return parameters_; }
 
   /// A tracker's table with its tuned numbers in it. Throws InputError where those are missing.

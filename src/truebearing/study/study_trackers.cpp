@@ -18,6 +18,10 @@ const TrackerSpec& Study::tracker(const std::string& name) const {
   throw InputError(path_.string(), "there is no tracker \"" + name + "\"", suggestion(name, names_of(trackers_)));
 }
 
+void Study::show_all() {
+  for (TrackerSpec& spec : trackers_) spec.shown = true;
+}
+
 SharedTable Study::configuration_of(const std::string& name) const {
   const TrackerSpec& spec = tracker(name);
   SharedTable configuration = spec.configuration;

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/compare_study.hpp"
+
+#include <fmt/format.h>
+#include <memory>
+#include <utility>
+
+#include "app/output.hpp"
+#include "truebearing/array/recorded_array.hpp"
+#include "truebearing/evaluation/report.hpp"
+#include "truebearing/recording/snapshot_log.hpp"
+#include "truebearing/report/verdict.hpp"
+#include "truebearing/study/measured_check.hpp"
+
+namespace truebearing {
+namespace {
+
+std::unique_ptr<Scenario> recorded_truth(const Study& study, const CompareStudyOptions& options) {
+  if (options.truth.empty()) return nullptr;
+  auto recorded = study.recorded_scenario(options.truth, options.reading.over(study.recording_options()));
+  if (is_snapshot_log(options.truth))
+    check_measured(study,
+                   Measured::snapshots(array_of(recorded->simulate({options.seed, Role::evaluation, 0})).sensors),
+                   options.truth);
+  return recorded;
+}
+
+}  // namespace
+
+void compare_study(const Study& study, const CorrectionModels& models, const CompareStudyOptions& options) {
+  const std::unique_ptr<Scenario> recorded = recorded_truth(study, options);
+  const std::vector<NamedScenario> scenarios =
+      recorded ? std::vector<NamedScenario>{{options.truth, recorded.get()}} : study.evaluation_scenarios();
+  std::string notes = study.note();
+  for (const NamedScenario& named : scenarios)
+    if (const std::string note = named.scenario->note(); !note.empty()) notes += note + "\n";
+
+  ComparisonOptions comparison_options = study.comparison_options(recorded != nullptr);
+  comparison_options.seed = options.seed;
+  if (options.runs > 0) comparison_options.runs = options.runs;
+  comparison_options.threads = options.threads;
+  comparison_options.details = options.report.wanted();
+  const TrackerSet trackers = study.make_tracker_set(models);
+  Comparison comparison;
+  {
+    ProgressLine progress("compare", options.quiet);
+    comparison_options.progress = progress.callback();
+    comparison = compare(trackers, scenarios, comparison_options);
+  }
+  comparison.study = study.name();
+  const Recording timed = scenarios.front().scenario->simulate({options.seed, Role::evaluation, 0});
+  for (int i = 0; i < trackers.size(); ++i)
+    comparison.ns_per_step.emplace_back(trackers.name(i),
+                                        time_per_step_ns(*study.make_tracker(trackers.name(i), models), timed));
+
+  std::vector<RunPicture> pictures;
+  if (options.report.wanted()) pictures = picture_runs(trackers, scenarios, comparison_options, comparison);
+  const std::string json = comparison_json(comparison, pictures);
+  const Results results = parse_results(json, study.name());
+  if (!is_standard_output(options.json) && !is_standard_output(options.report.page))
+    fmt::print("{}{}\n{}\n", notes, with_best_coloured(comparison_table(comparison, options.tables.layout())),
+               emphasised(answer(results)));
+  if (!options.json.empty()) write_output(options.json, json);
+  if (options.report.wanted()) write_report(options.report, {results});
+}
+
+}  // namespace truebearing

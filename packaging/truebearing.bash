@@ -11,7 +11,7 @@ _truebearing() {
     case $command in
       simulate) folder=scenarios ;;
       new) folder=templates ;;
-      tune | train | track | compare | check) folder=studies ;;
+      tune | train | learn | track | compare | check) folder=studies ;;
     esac
     if [[ $folder ]] && data=$("$program" --data-dir 2>/dev/null); then
       words=$(cd "$data/data/$folder" && printf '%s\n' *.toml)

@@ -74,6 +74,7 @@ int command_line(int argc, const char* const* argv) {
   add_simulate(all);
   add_tune(all);
   add_train(all);
+  add_learn(all);
   add_track(all);
   add_compare(all);
   add_report(all);

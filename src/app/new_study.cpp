@@ -98,9 +98,7 @@ void write_new_study(const NewArguments& options) {
   if (!is_standard_output(output)) rename(study, options.kind, name);
   write_output(output, study);
   if (is_standard_output(output)) return;
-  const bool tunes = study.find("\ntune = ") != std::string::npos;
-  fmt::print("written: {}\nnext:{} truebearing train {}; truebearing compare {}\n", output,
-             tunes ? fmt::format(" truebearing tune {};", output) : "", output, output);
+  fmt::print("written: {}\nnext: truebearing learn {} --report {}.html\n", output, output, name);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@ void add_new(const Subcommands& all);
 void add_simulate(const Subcommands& all);
 void add_tune(const Subcommands& all);
 void add_train(const Subcommands& all);
+void add_learn(const Subcommands& all);
 void add_track(const Subcommands& all);
 void add_compare(const Subcommands& all);
 void add_report(const Subcommands& all);

@@ -12,8 +12,6 @@
 #include "app/output.hpp"
 #include "app/subcommands.hpp"
 #include "app/workflow.hpp"
-#include "truebearing/correction/learned_motion_file.hpp"
-#include "truebearing/correction/model_file.hpp"
 
 namespace truebearing {
 namespace {
@@ -27,16 +25,6 @@ struct TrainArguments {
   bool quiet = false;
 };
 
-void train_one_motion(const Study& study, const std::string& name, const TrainArguments& options) {
-  const std::filesystem::path own = study.tracker(name).learned->file;
-  const std::string output = options.output.empty() ? own.string() : options.output;
-  check_products(study, {output}, {own});
-  const MotionResidual residual =
-      train_motion(study, name, {options.seed.value_or(study.seed()), options.threads, options.quiet});
-  write_output(output, learned_motion_text(residual));
-  if (!is_standard_output(output)) fmt::print("written: {}\n", output);
-}
-
 void train(const TrainArguments& options) {
   Study study = Study::load(options.study);
   for (const std::string& name : options.trackers)
@@ -49,35 +37,23 @@ void train(const TrainArguments& options) {
   if (!options.output.empty() && names.size() + learned.size() > 1)
     throw InputError("-o", fmt::format("names one file for {} models", names.size() + learned.size()),
                      "--tracker NAME beside it");
-  for (const std::string& name : learned) train_one_motion(study, name, options);
-  if (names.empty()) return;
-  std::vector<std::string> outputs;
   std::vector<std::filesystem::path> own;
-  for (const std::string& name : names) {
-    own.push_back(study.tracker(name).correction->model);
-    outputs.push_back(options.output.empty() ? own.back().string() : options.output);
-  }
+  std::vector<std::string> outputs, motions;
+  const auto output_of = [&](const std::filesystem::path& file) {
+    own.push_back(file);
+    return options.output.empty() ? file.string() : options.output;
+  };
+  for (const std::string& name : names) outputs.push_back(output_of(study.tracker(name).correction->model));
+  for (const std::string& name : learned) motions.push_back(output_of(study.tracker(name).learned->file));
   check_products(study, outputs, own);
+  check_products(study, motions, own);
   WorkflowOptions workflow{options.seed.value_or(study.seed()), options.threads, options.quiet};
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (study.tracker(names[i]).correction->design.network != NetworkKind::recurrent) continue;
-    if (is_standard_output(outputs[i]))
-      throw InputError("-o", "is one stream, and the model two files", "a file's name");
-    workflow.checkpoints[names[i]] = outputs[i] + ".checkpoint";
-  }
+  keep_checkpoints(study, names, outputs, workflow);
+  for (std::size_t i = 0; i < learned.size(); ++i)  // first: filters that are corrected may have them
+    write_motion(motions[i], train_motion(study, learned[i], workflow));
+  if (names.empty()) return;
   const CorrectionModels models = train_study(study, names, workflow);
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const CorrectionModel& model = *models.at(names[i]);
-    if (weights_name(model).empty())
-      write_output(outputs[i], model_text(model));
-    else
-      write_model_file(outputs[i], model);
-    if (const auto checkpoint = workflow.checkpoints.find(names[i]); checkpoint != workflow.checkpoints.end()) {
-      std::error_code ignored;
-      std::filesystem::remove(checkpoint->second, ignored);
-    }
-    if (!is_standard_output(outputs[i])) fmt::print("written: {}\n", outputs[i]);
-  }
+  for (std::size_t i = 0; i < names.size(); ++i) write_model(outputs[i], *models.at(names[i]));
 }
 
 }  // namespace

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // truebearing tune STUDY.toml [-o FILE]: baseline parameters fitted to training draws.
 #include <cstdint>
-#include <fmt/format.h>
 #include <memory>
 #include <optional>
 
 #include "app/data_folder.hpp"
-#include "app/output.hpp"
 #include "app/subcommands.hpp"
 #include "app/workflow.hpp"
 
@@ -29,8 +27,7 @@ void tune(const TuneArguments& options) {
   check_products(study, {output}, {study.parameters_path()});
   const ParametersFile parameters =
       tune_study(study, {options.seed.value_or(study.seed()), options.threads, options.quiet});
-  write_output(output, parameters_text(parameters));
-  if (!is_standard_output(output)) fmt::print("written: {}\n", output);
+  write_parameters(output, parameters);
 }
 
 }  // namespace

@@ -4,16 +4,23 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <system_error>
 
 #include "app/output.hpp"
 #include "training/learned_motion_training.hpp"
 #include "training/train_correction.hpp"
 #include "training/tune.hpp"
+#include "truebearing/correction/learned_motion_file.hpp"
+#include "truebearing/correction/model_file.hpp"
 
 namespace truebearing {
 namespace {
 
 constexpr std::size_t kValidationRuns = 200;
+
+std::string checkpoint_of(const std::string& model) {
+  return model + ".checkpoint";
+}
 
 // RMSE of the corrected tracker, its base and its reference on runs that neither training nor evaluation sees.
 std::string validation_scores(const Study& study, const std::string& name, const CorrectionModels& models,
@@ -127,6 +134,16 @@ MotionResidual train_motion(const Study& study, const std::string& name, const W
   return residual;
 }
 
+void keep_checkpoints(const Study& study, const std::vector<std::string>& names,
+                      const std::vector<std::string>& outputs, WorkflowOptions& options) {
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (study.tracker(names[i]).correction->design.network != NetworkKind::recurrent) continue;
+    if (is_standard_output(outputs[i]))
+      throw InputError("-o", "is one stream, and the model two files", "a file's name");
+    options.checkpoints[names[i]] = checkpoint_of(outputs[i]);
+  }
+}
+
 CorrectionModels train_study(const Study& study, const std::vector<std::string>& names,
                              const WorkflowOptions& options) {
   CorrectionModels models;
@@ -152,6 +169,27 @@ CorrectionModels train_study(const Study& study, const std::vector<std::string>&
     models[name] = std::make_shared<const CorrectionModel>(std::move(model));
   }
   return models;
+}
+
+void write_parameters(const std::string& output, const ParametersFile& parameters) {
+  write_output(output, parameters_text(parameters));
+  if (!is_standard_output(output)) fmt::print("written: {}\n", output);
+}
+
+void write_motion(const std::string& output, const MotionResidual& residual) {
+  write_output(output, learned_motion_text(residual));
+  if (!is_standard_output(output)) fmt::print("written: {}\n", output);
+}
+
+void write_model(const std::string& output, const CorrectionModel& model) {
+  if (weights_name(model).empty()) {
+    write_output(output, model_text(model));
+  } else {
+    write_model_file(output, model);
+    std::error_code ignored;
+    std::filesystem::remove(checkpoint_of(output), ignored);
+  }
+  if (!is_standard_output(output)) fmt::print("written: {}\n", output);
 }
 
 }  // namespace truebearing

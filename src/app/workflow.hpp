@@ -39,8 +39,19 @@ std::vector<std::string> learned_trackers(const Study& study, const std::vector<
 /// Teaches the motion of that tracker.
 MotionResidual train_motion(const Study& study, const std::string& name, const WorkflowOptions& options);
 
+/// Names a file beside each output, in which the training of a recurrent network keeps how far it is. Throws InputError
+/// where such a model, which is two files, is to be a stream.
+void keep_checkpoints(const Study& study, const std::vector<std::string>& names,
+                      const std::vector<std::string>& outputs, WorkflowOptions& options);
+
 /// Trains the corrected trackers of those names; all of them where there are none. Scores each on validation runs,
 /// which the model file remembers.
 CorrectionModels train_study(const Study& study, const std::vector<std::string>& names, const WorkflowOptions& options);
+
+/// These write to a file or standard output, and print which file it was.
+void write_parameters(const std::string& output, const ParametersFile& parameters);
+void write_motion(const std::string& output, const MotionResidual& residual);
+/// And removes its checkpoint.
+void write_model(const std::string& output, const CorrectionModel& model);
 
 }  // namespace truebearing

@@ -23,14 +23,14 @@ TEST_P(NewStudyOfKind, IsValidAndItsTrackersRun) {
   const std::string kind = GetParam();
   const Outcome made = run(folder, "new " + kind);
   EXPECT_EQ(made.status, 0) << made.err;
-  EXPECT_THAT(made.out, HasSubstr("truebearing train " + kind + ".toml"));
+  EXPECT_THAT(made.out, HasSubstr("truebearing learn " + kind + ".toml --report " + kind + ".html"));
   const Outcome checked = run(folder, "check " + kind + ".toml");
   EXPECT_EQ(checked.status, 0) << checked.err;
   EXPECT_THAT(checked.out, HasSubstr("nfnn"));
   folder.write("quick.toml", "name = \"quick\"\nlike = \"" + kind +
                                  ".toml\"\n[tuning]\nruns = 5\n[trackers.nfnn.training]\nruns = 60\nrules = "
                                  "4\niterations = 3\n" +
-                                 (made.out.find(" tune ") == std::string::npos
+                                 (folder.read(kind + ".toml").find("\ntune = ") == std::string::npos
                                       ? ""
                                       : "[trackers.imm_nfnn.training]\nruns = 60\nrules = 4\niterations = 3\n"));
   const Outcome compared = run(folder, "compare quick.toml --retrain --runs 3 --quiet");

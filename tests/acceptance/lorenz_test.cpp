@@ -45,10 +45,10 @@ Comparison run(const std::string& name, std::size_t runs, const std::vector<std:
 }
 
 TEST(Lorenz, MismatchIsReproducedAndLearned) {
-  const Comparison published = run("lorenz_mismatch", 3, {"published"});
+  const Comparison published = run("lorenz_mismatch", 2, {"published"});
   const Decibels ekf = decibels(published, "ekf");
   EXPECT_NEAR(ekf.mse, -6.32, 0.15 + 2.0 * ekf.se);
-  const Comparison fresh = run("lorenz_mismatch", 3, {"fresh"});
+  const Comparison fresh = run("lorenz_mismatch", 2, {"fresh"});
   for (const Comparison& comparison : {published, fresh}) {
     expect_below(comparison, "rk4_tuned", -14.3);
     expect_below(comparison, "learned", -14.0);
@@ -58,7 +58,7 @@ TEST(Lorenz, MismatchIsReproducedAndLearned) {
 }
 
 TEST(Lorenz, RotationIsFittedFromPairs) {
-  const Comparison comparison = run("lorenz_rotated", 20, {"long"});
+  const Comparison comparison = run("lorenz_rotated", 8, {"long"});
   expect_below(comparison, "fitted", -40.0);
   EXPECT_GT(decibels(comparison, "ekf").mse, -20.0);
   EXPECT_NEAR(decibels(comparison, "fitted").mse, decibels(comparison, "aligned").mse, 0.1);
@@ -68,7 +68,7 @@ TEST(Lorenz, RotationIsFittedFromPairs) {
 TEST(Lorenz, PredictionsFromTheUnstablePointAreBelowThePrintedOnes) {
   const std::vector<std::pair<std::string, double>> best{
       {"r2_1", 0.399}, {"r2_10", 0.823}, {"r2_100", 2.016}, {"r2_1000", 5.281}};
-  for (const auto& [set, rmse] : best) expect_below(run("lorenz_filternet", 60, {set}), "gru", 20.0 * std::log10(rmse));
+  for (const auto& [set, rmse] : best) expect_below(run("lorenz_filternet", 40, {set}), "gru", 20.0 * std::log10(rmse));
 }
 
 }  // namespace

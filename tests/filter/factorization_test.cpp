@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 
 #include "truebearing/core/constants.hpp"
@@ -15,18 +16,18 @@ namespace {
 template <typename Size>
 class SquareMatrices : public ::testing::Test {
  public:
-  static constexpr int N = Size::value;
-  using Matrix = Eigen::Matrix<double, N, N>;
-  using Vector = Eigen::Matrix<double, N, 1>;
+  static constexpr int kSize = Size::value;
+  using Square = Eigen::Matrix<double, kSize, kSize>;
+  using Column = Eigen::Matrix<double, kSize, 1>;
 
   // A correlation matrix with eigenvalues from `least` up, its variances drawn over `decades` on both sides of `scale`.
-  Matrix covariance(double least, double scale, double decades) {
-    const Matrix A = Matrix::NullaryExpr([&] { return random.normal(); });
-    Vector eigenvalues = Vector::NullaryExpr([&] { return random.uniform(0.5, 2.0); });
+  Square covariance(double least, double scale, double decades) {
+    const Square A = Square::NullaryExpr([&] { return random.normal(); });
+    Column eigenvalues = Column::NullaryExpr([&] { return random.uniform(0.5, 2.0); });
     eigenvalues[0] = least;
-    const Matrix Q = Eigen::SelfAdjointEigenSolver<Matrix>(A + A.transpose()).eigenvectors();
-    Matrix P = Q * eigenvalues.asDiagonal() * Q.transpose();
-    for (int i = 0; i < N; ++i) {
+    const Square Q = Eigen::SelfAdjointEigenSolver<Square>(A + A.transpose()).eigenvectors();
+    Square P = Q * eigenvalues.asDiagonal() * Q.transpose();
+    for (int i = 0; i < kSize; ++i) {
       const double sigma = std::sqrt(scale) * std::pow(10.0, random.uniform(-decades, decades) / 2.0);
       P.row(i) *= sigma;
       P.col(i) *= sigma;
@@ -34,7 +35,7 @@ class SquareMatrices : public ::testing::Test {
     return (P + P.transpose()) / 2.0;
   }
 
-  RandomStream random{{.seed = N}, StreamId::test};
+  RandomStream random{{.seed = kSize}, StreamId::test};
 };
 
 using Sizes =
@@ -47,7 +48,7 @@ TYPED_TEST(SquareMatrices, PositiveOnesAreFoundToBeAtAnyScale) {
   for (const double scale : {1e-290, 1e-150, 1e-30, 1.0, 1e30, 1e150, 1e290})
     for (int k = 0; k < 200; ++k) {
       const auto P = this->covariance(k % 2 ? 1e-6 : 0.5, scale, 8.0);
-      EXPECT_TRUE((is_positive_semidefinite<TestFixture::N, double>(P))) << scale << "\n" << P;
+      EXPECT_TRUE((is_positive_semidefinite<TestFixture::kSize, double>(P))) << scale << "\n" << P;
     }
 }
 
@@ -56,13 +57,13 @@ TYPED_TEST(SquareMatrices, IndefiniteOnesAreFoundToBeAtAnyScale) {
   for (const double scale : {1e-290, 1e-150, 1e-30, 1.0, 1e30, 1e150, 1e290})
     for (int k = 0; k < 200; ++k) {
       const auto P = this->covariance(k % 2 ? -1e-6 : -0.5, scale, 8.0);
-      EXPECT_FALSE((is_positive_semidefinite<TestFixture::N, double>(P))) << scale << "\n" << P;
+      EXPECT_FALSE((is_positive_semidefinite<TestFixture::kSize, double>(P))) << scale << "\n" << P;
     }
 }
 
 TYPED_TEST(SquareMatrices, SingularOnesAreSemidefinite) {
-  constexpr int N = TestFixture::N;
-  using Matrix = typename TestFixture::Matrix;
+  constexpr int N = TestFixture::kSize;
+  using Matrix = typename TestFixture::Square;
   EXPECT_TRUE((is_positive_semidefinite<N, double>(Matrix::Zero())));
   EXPECT_TRUE((is_positive_semidefinite<N, double>(Matrix::Ones())));
   Matrix one = Matrix::Zero();
@@ -71,7 +72,7 @@ TYPED_TEST(SquareMatrices, SingularOnesAreSemidefinite) {
 }
 
 TYPED_TEST(SquareMatrices, OnesThatAreNotFiniteAreNot) {
-  constexpr int N = TestFixture::N;
+  constexpr int N = TestFixture::kSize;
   for (const double value : {kNaN, HUGE_VAL, -HUGE_VAL})
     for (int j = 0; j < N; ++j)
       for (int i = j; i < N; ++i) {
@@ -82,7 +83,7 @@ TYPED_TEST(SquareMatrices, OnesThatAreNotFiniteAreNot) {
 }
 
 TYPED_TEST(SquareMatrices, RootsAreTriangularAndSquareToTheMatrix) {
-  constexpr int N = TestFixture::N;
+  constexpr int N = TestFixture::kSize;
   for (int k = 0; k < 200; ++k) {
     const auto P = this->covariance(1e-3, 1.0, 6.0);
     const auto L = semidefinite_root<N, double>(P);
@@ -92,14 +93,16 @@ TYPED_TEST(SquareMatrices, RootsAreTriangularAndSquareToTheMatrix) {
         const double size = std::sqrt(P(i, i) * P(j, j));
         EXPECT_NEAR((L * L.transpose())(i, j), P(i, j), 1e-13 * size);
         EXPECT_NEAR((U * U.transpose())(i, j), P(i, j), 1e-13 * size);
-        if (i < j) EXPECT_EQ(L(i, j), 0.0);
-        if (i > j) EXPECT_EQ(U(i, j), 0.0);
+        if (i < j) {
+          EXPECT_EQ(L(i, j), 0.0);
+          EXPECT_EQ(U(j, i), 0.0);
+        }
       }
   }
 }
 
 TYPED_TEST(SquareMatrices, TriangularizeKeepsTheProductAndWhatIsTriangular) {
-  constexpr int N = TestFixture::N;
+  constexpr int N = TestFixture::kSize;
   using Wide = Eigen::Matrix<double, N, 2 * N>;
   for (int k = 0; k < 200; ++k) {
     const Wide W = Wide::NullaryExpr([&] { return this->random.uniform() < 0.3 ? 0.0 : this->random.normal(); });
@@ -107,8 +110,7 @@ TYPED_TEST(SquareMatrices, TriangularizeKeepsTheProductAndWhatIsTriangular) {
     triangularize<N, 2 * N, double>(array);
     EXPECT_LE((array * array.transpose() - W * W.transpose()).norm(), 1e-14 * W.squaredNorm());
     for (int j = 0; j < 2 * N; ++j)
-      for (int i = 0; i < N; ++i)
-        if (i > j - N) EXPECT_EQ(array(i, j), 0.0);
+      for (int i = std::max(0, j - N + 1); i < N; ++i) EXPECT_EQ(array(i, j), 0.0);
     for (int i = 0; i < N; ++i) EXPECT_GE(array(i, N + i), 0.0);
     const Wide before = array;
     triangularize<N, 2 * N, double>(array);

@@ -83,7 +83,6 @@ TEST(Program, BadInputIsStatus1AndOneLineThatNamesWhereAndWhat) {
       {"track plain.toml back.csv", "back.csv:4"},
       {"track plain.toml bearings.csv", "position_m"},
       {"track plain.toml nowhere.csv", "nowhere.csv"},
-      {"track plain.toml good.csv --json -", "truth"},
       {"rules bad.json", "bad.json: format"},
       {"rules deep.json", "64 levels"},
       {"rules nowhere.json", "nowhere.json"},

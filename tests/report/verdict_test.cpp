@@ -28,6 +28,16 @@ TEST(Verdict, AnswersWhatWasCompared) {
             "consistent (NEES 2.1, 2 expected).");
 }
 
+TEST(Verdict, AsksOfTheTrackerThatErrsLeast) {
+  ResultJson json = results_json();
+  const ResultJson pair = json["paired"]["nfnn - tuned"];
+  json["paired"] = ResultJson::object();
+  json["paired"]["tuned - nfnn"] = pair;
+  json["paired"]["nfnn - tuned"] = pair;
+  EXPECT_THAT(question(read(json)), HasSubstr("Does nfnn err less than tuned?"));
+  EXPECT_THAT(answer(read(json)), HasSubstr("nfnn is 14 % below tuned"));
+}
+
 TEST(Verdict, SaysWhereNoDifferenceCanBeTold) {
   ResultJson json = results_json();
   json["paired"]["nfnn - tuned"]["position_m"]["se"] = 14.4;

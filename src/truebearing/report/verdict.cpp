@@ -78,9 +78,23 @@ std::string best_of(const ResultFigures& figures, const ResultTracker& best) {
   return text;
 }
 
+// What is asked: the first pair of the tracker that errs least of those that a pair holds against another.
+const ResultPair* asked(const ResultFigures& figures) {
+  const ResultPair* first = nullptr;
+  double least = 0.0;
+  for (const ResultPair& pair : figures.pairs) {
+    const ResultTracker* tracker = figures.tracker(pair.a);
+    if (!tracker || tracker->quantities.empty() || tracker->is_bound) continue;
+    const double rmse = tracker->quantities.front().rmse;
+    if (first && !(rmse < least)) continue;
+    first = &pair;
+    least = rmse;
+  }
+  return first;
+}
+
 const ResultTracker* subject(const ResultFigures& figures) {
-  if (!figures.pairs.empty())
-    if (const ResultTracker* tracker = figures.tracker(figures.pairs.front().a)) return tracker;
+  if (const ResultPair* pair = asked(figures)) return figures.tracker(pair->a);
   for (const ResultTracker& tracker : figures.trackers)
     if (!tracker.quantities.empty())
       if (const ResultTracker* best = best_in(figures, tracker.quantities.front().name)) return best;
@@ -114,9 +128,8 @@ std::string consistency(const ResultTracker& tracker, double runs) {
 std::string question(const Results& results) {
   const std::string where =
       fmt::format("{}, {} runs, seed {:.0f}", results.study, shown(results.runs, 9), results.seed);
-  if (!results.all.pairs.empty())
-    return fmt::format("Does {} err less than {}? {}.", results.all.pairs.front().a, results.all.pairs.front().b,
-                       where);
+  if (const ResultPair* pair = asked(results.all))
+    return fmt::format("Does {} err less than {}? {}.", pair->a, pair->b, where);
   return fmt::format("Which tracker errs least? {}.", where);
 }
 
@@ -124,7 +137,7 @@ std::string answer(const Results& results) {
   const ResultTracker* tracker = subject(results.all);
   if (!tracker) return "No tracker has an error that could be scored.";
   std::string text;
-  if (!results.all.pairs.empty()) text = differences(results.all, tracker->name, results.all.pairs.front().b);
+  if (const ResultPair* pair = asked(results.all)) text = differences(results.all, pair->a, pair->b);
   text = text.empty() ? best_of(results.all, *tracker) : "is " + text;
   if (const std::string bound = against_bound(results.all, *tracker); !bound.empty()) text += "; " + bound;
   const double runs = results.runs * static_cast<double>(std::max<std::size_t>(results.sets.size(), 1));

@@ -24,9 +24,9 @@ void hand_unrolled_2_1(benchmark::State& state) {
   const auto z_m = measurements(15.0);
   double dt = kPeriod_s, q = kDensity_m2ps3, R = kSigma_m * kSigma_m;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(dt);
-    benchmark::DoNotOptimize(q);
-    benchmark::DoNotOptimize(R);
+    hide(dt);
+    hide(q);
+    hide(R);
     const double q11 = q * dt * dt * dt / 3, q12 = q * dt * dt / 2, q22 = q * dt;
     double x1 = 0, x2 = 0, p11 = kP0, p12 = 0, p22 = kP0;
     for (const double z : z_m) {
@@ -58,9 +58,9 @@ void position(benchmark::State& state) {
   Position<Dim> model{Eigen::Matrix<double, Dim, 1>::Constant(kSigma_m)};
   double dt_s = kPeriod_s;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(dt_s);
-    benchmark::DoNotOptimize(motion);
-    benchmark::DoNotOptimize(model);
+    hide(dt_s);
+    hide(motion);
+    hide(model);
     KalmanFilter<kStates, Form> filter(Eigen::Matrix<double, kStates, 1>::Zero(),
                                        kP0 * Eigen::Matrix<double, kStates, kStates>::Identity());
     for (std::size_t k = 0; k < kSteps; ++k) {
@@ -92,9 +92,9 @@ void range(benchmark::State& state) {
   RangeToSite<> model{{0.0, -5000.0}, kSigma_m};
   double dt_s = kPeriod_s;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(dt_s);
-    benchmark::DoNotOptimize(motion);
-    benchmark::DoNotOptimize(model);
+    hide(dt_s);
+    hide(motion);
+    hide(model);
     KalmanFilter<4, Form> filter(Eigen::Vector4d::Zero(), kP0 * Eigen::Matrix4d::Identity());
     for (const double z : east_m) {
       filter.predict(motion, dt_s);

@@ -14,6 +14,13 @@ inline constexpr double kDensity_m2ps3 = 0.1;
 inline constexpr double kSigma_m = 10.0;
 inline constexpr double kP0 = 1000.0;  ///< of every component
 
+/// The compiler may suppose nothing of `value` from here on. benchmark::DoNotOptimize, which lets it choose between memory
+/// and a register, loses a value that is to be kept (GCC bug 105519).
+template <typename Value>
+inline void hide(Value& value) {
+  asm volatile("" : "+m"(value) : : "memory");
+}
+
 /// Positions along one axis with errors that look random and cost nothing to repeat.
 inline std::array<double, kSteps> measurements(double speed_mps) {
   std::array<double, kSteps> z_m;

@@ -61,6 +61,27 @@ TYPED_TEST(SquareMatrices, IndefiniteOnesAreFoundToBeAtAnyScale) {
     }
 }
 
+// Two variables that are one, and a third that is said to be correlated with them by more than 1: whatever is eliminated
+// after the two is made of rounding.
+TYPED_TEST(SquareMatrices, RoundingHasNoSayBehindTwoVariablesThatAreOne) {
+  constexpr int N = TestFixture::kSize;
+  if constexpr (N >= 3) {
+    for (const double correlation : {1.01, 1.2, 100.0})
+      for (int k = 0; k < 2000; ++k) {
+        auto P = this->covariance(0.5, 1.0, 0.0);
+        const double a = this->random.uniform(0.1, 10.0), b = this->random.uniform(0.1, 10.0);
+        const double c = this->random.uniform(0.1, 10.0);
+        P(0, 0) = a * a;
+        P(1, 1) = b * b;
+        P(0, 1) = P(1, 0) = a * b;
+        P(2, 2) = c * c;
+        P(0, 2) = P(2, 0) = correlation * a * c;
+        P(1, 2) = P(2, 1) = correlation * b * c;
+        ASSERT_FALSE((is_positive_semidefinite<N, double>(P))) << P;
+      }
+  }
+}
+
 TYPED_TEST(SquareMatrices, SingularOnesAreSemidefinite) {
   constexpr int N = TestFixture::kSize;
   using Matrix = typename TestFixture::Square;

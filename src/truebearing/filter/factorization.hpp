@@ -84,26 +84,36 @@ EIGEN_ALWAYS_INLINE bool is_positive_definite(const Eigen::Matrix<Scalar, N, N>&
 
 namespace detail {
 
+/// Of a variance, given those before it, that is a smaller share of itself alone: what is found of it without a division
+/// may be rounding.
+template <typename Scalar>
+inline constexpr Scalar kPlainShare = Scalar(1) / 1024;
+
 /// Says that A is positive definite, or nothing: two variables are eliminated at a time and nothing is divided, for
-/// which rest is det(B) times the Schur complement of the leading block B (2 x 2). What leaves the range of Scalar on
-/// the way, as products of up to N variances may, is not said to be.
+/// which rest is det(B) times the Schur complement of the leading block B (2 x 2). Each variance must be more than
+/// `least`, so that rounding is far from having the say. What leaves the range of Scalar on the way, as products of up
+/// to N variances may, is not said to be.
 template <int N, typename Scalar>
-EIGEN_ALWAYS_INLINE bool is_plainly_positive_definite(const Eigen::Matrix<Scalar, N, N>& A) {
+EIGEN_ALWAYS_INLINE bool is_plainly_positive_definite(const Eigen::Matrix<Scalar, N, N>& A,
+                                                      const Eigen::Matrix<Scalar, N, 1>& least) {
   constexpr Scalar kMax = std::numeric_limits<Scalar>::max();
   if constexpr (N == 1) {
-    return (A(0, 0) > 0) & (A(0, 0) <= kMax);
+    return (A(0, 0) > least(0)) & (A(0, 0) <= kMax);
   } else {
-    const Scalar det = A(0, 0) * A(1, 1) - A(1, 0) * A(1, 0);
-    const bool leads = (A(0, 0) > 0) & (det > 0) & (det <= kMax);
+    const Scalar whole = A(0, 0) * A(1, 1), det = whole - A(1, 0) * A(1, 0);
+    const bool leads =
+        (A(0, 0) > least(0)) & (A(1, 1) > least(1)) & (det > kPlainShare<Scalar> * whole) & (det <= kMax);
     if constexpr (N == 2) {
       return leads;
     } else {
       Eigen::Matrix<Scalar, N - 2, N - 2> rest;
+      Eigen::Matrix<Scalar, N - 2, 1> rest_least;
       for (int j = 2; j < N; ++j) {  // det B^-1 A_j, and its products with the others
         const Scalar u = A(1, 1) * A(j, 0) - A(1, 0) * A(j, 1), v = A(0, 0) * A(j, 1) - A(1, 0) * A(j, 0);
         for (int i = j; i < N; ++i) rest(i - 2, j - 2) = det * A(i, j) - (u * A(i, 0) + v * A(i, 1));
+        rest_least(j - 2) = det * (kPlainShare<Scalar> * A(j, j) + least(j));
       }
-      return leads & is_plainly_positive_definite<N - 2, Scalar>(rest);
+      return leads & is_plainly_positive_definite<N - 2, Scalar>(rest, rest_least);
     }
   }
 }
@@ -128,7 +138,9 @@ template <int N, typename Scalar>
 /// took most of a step's time.
 template <int N, typename Scalar>
 EIGEN_ALWAYS_INLINE bool is_positive_semidefinite(const Eigen::Matrix<Scalar, N, N>& A) {
-  if (detail::is_plainly_positive_definite<N, Scalar>(A)) [[likely]]
+  Eigen::Matrix<Scalar, N, 1> least;
+  fill(least, Scalar(0));
+  if (detail::is_plainly_positive_definite<N, Scalar>(A, least)) [[likely]]
     return true;
   if constexpr (N > 2) {
     const Eigen::Matrix<Scalar, N, N> copy = A;  // so that A itself has no address
@@ -138,8 +150,8 @@ EIGEN_ALWAYS_INLINE bool is_positive_semidefinite(const Eigen::Matrix<Scalar, N,
   }
 }
 
-/// Lower triangular L with L L' = A, up to some n eps of the variances; NaN where A is not positive semi-definite, as
-/// is_positive_semidefinite() has it.
+/// Lower triangular L with L L' = A, up to some n eps of the variances; NaN where A is not positive semi-definite, up to
+/// the tolerance of is_positive_semidefinite().
 template <int N, typename Scalar>
 Eigen::Matrix<Scalar, N, N> semidefinite_root(const Eigen::Matrix<Scalar, N, N>& A) {
   const Eigen::Matrix<Scalar, N, 1> slack = semidefinite_slack<N, Scalar>(A);

@@ -94,6 +94,11 @@ class TuningRuns {
 // H of z = H x, row by row, by least squares over every measurement and the truth beside it.
 std::vector<double> fitted_matrix(const std::vector<Recording>& recordings, const Study& study,
                                   const TrackerSpec& spec) {
+  if ((*spec.configuration)["ahead_s"].value_or(0.0) > 0.0)
+    throw InputError(
+        study.path().string() + ": trackers." + spec.name + ".tune",
+        std::string("names ") + kMeasurementMatrix + ", and ahead_s a truth that is not beside what is measured",
+        "a tracker of the present");
   const Eigen::Index n = study.scenario().truth_space().size();
   const auto numbers = static_cast<Eigen::Index>(numbers_at(*spec.configuration, kMeasurementMatrix, spec.name).size());
   const Eigen::Index m = numbers / n;

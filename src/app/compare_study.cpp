@@ -56,11 +56,12 @@ void compare_study(const Study& study, const CorrectionModels& models, const Com
   std::vector<RunPicture> pictures;
   if (options.report.wanted()) pictures = picture_runs(trackers, scenarios, comparison_options, comparison);
   const std::string json = comparison_json(comparison, pictures);
-  const Results results = parse_results(json, study.name());
-  if (!is_standard_output(options.json) && !is_standard_output(options.report.page))
-    fmt::print("{}{}\n{}\n", notes, with_best_coloured(comparison_table(comparison, options.tables.layout())),
-               emphasised(answer(results)));
+  const bool prints = !is_standard_output(options.json) && !is_standard_output(options.report.page);
+  if (prints) fmt::print("{}{}", notes, with_best_coloured(comparison_table(comparison, options.tables.layout())));
   if (!options.json.empty()) write_output(options.json, json);
+  if (comparison.trackers.empty() || !(prints || options.report.wanted())) return;
+  const Results results = parse_results(json, study.name());
+  if (prints) fmt::print("\n{}\n", emphasised(answer(results)));
   if (options.report.wanted()) write_report(options.report, {results});
 }
 

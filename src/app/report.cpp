@@ -26,8 +26,10 @@ void make_page(const PageArguments& options) {
     if (is_log_results(json, options.results[0])) {
       write_output(options.report.page, log_page(json, options.results[0]));
       if (!options.report.svg.empty()) write_plots(options.report.svg, log_plot_files(json, options.results[0]));
-      return;
+    } else {
+      write_report(options.report, {parse_results(json, options.results[0])});
     }
+    return;
   }
   std::vector<Results> all;
   for (const std::string& file : options.results) all.push_back(read_results(file));

@@ -45,8 +45,9 @@ void train(const TrainArguments& options) {
   };
   for (const std::string& name : names) outputs.push_back(output_of(study.tracker(name).correction->model));
   for (const std::string& name : learned) motions.push_back(output_of(study.tracker(name).learned->file));
-  check_products(study, outputs, own);
-  check_products(study, motions, own);
+  std::vector<std::string> all = outputs;
+  all.insert(all.end(), motions.begin(), motions.end());
+  check_products(study, all, own);
   WorkflowOptions workflow{options.seed.value_or(study.seed()), options.threads, options.quiet};
   keep_checkpoints(study, names, outputs, workflow);
   for (std::size_t i = 0; i < learned.size(); ++i)  // first: filters that are corrected may have them

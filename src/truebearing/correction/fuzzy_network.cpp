@@ -116,7 +116,7 @@ FuzzyNetwork::Jacobian FuzzyNetwork::jacobian(const Inputs& input, const Strengt
     double total = 0.0;
     for (Eigen::Index j = 0; j < phi.size(); ++j) {
       const double s = parameters_.widths(j, i);
-      const double weight = phi[j] * (parameters_.centres(j, i) - u) / (s * s);
+      const double weight = phi[j] * ((parameters_.centres(j, i) - u) / s) / s;
       total += weight;
       const double* const w = scaled_consequents_.data() + j * slope.rows();
       for (Eigen::Index k = 0; k < slope.rows(); ++k) column[k] += weight * w[k];

@@ -4,7 +4,7 @@
 // T the period that r was taught at; a longer dt is crossed in equal pieces. It stands inside a filter, whose gain and
 // covariance follow from it: closed loop, and unlike an output correction (correction.hpp) not bounded by a trusted
 // tracker. What bounds it is the network: r(x) lies in the hull of what its rules say, and is constant, with no slope,
-// beyond the box of what was taught.
+// beyond the standard deviations of the states that were taught at which it cuts its inputs.
 #pragma once
 
 #include <Eigen/Core>

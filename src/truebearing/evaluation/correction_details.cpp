@@ -52,7 +52,8 @@ void CorrectionTally::take_features(const CorrectionAccount& account) {
     feature.squares += value * value;
     feature.least = std::min(feature.least, value);
     feature.greatest = std::max(feature.greatest, value);
-    if (gate_ && (value < gate_->low[place] || value > gate_->high[place])) feature.outside += 1.0;
+    const auto& box = model_->gate;
+    if (box && (value < box->low[place] || value > box->high[place])) feature.outside += 1.0;
     const InputScale standard = input_scale(model_->network, place);
     const double share = 0.5 + 0.5 * (value - standard.mean) / (standard.scale * standard.clip);
     constexpr auto kLast = static_cast<double>(CorrectionDetails::kBins) - 1.0;

@@ -38,7 +38,8 @@ struct CorrectionDetails {
 
   struct Feature {
     double mean = kNaN, deviation = kNaN, least = kNaN, greatest = kNaN;
-    double outside = 0.0;         ///< share of the steps outside the box of the gate; 0 where there is none
+    double outside =
+        0.0;  ///< share of the steps outside the box of the model's gate, in force or not; 0 where there is none
     std::vector<double> counted;  ///< steps in each of kBins bins over mean -+ clip scale of the network's input
   };
   static constexpr std::size_t kBins = 80;

@@ -157,13 +157,13 @@ bool is_bound(const Comparison& comparison, const std::string& name) {
 // With the least RMSE in that quantity of several that are no bounds.
 bool is_best(const Comparison& comparison, const TrackerSummary& summary, const std::string& quantity) {
   const QuantitySummary* of = summary.quantity(quantity);
-  if (!of || is_bound(comparison, summary.name)) return false;
+  if (!of || !std::isfinite(of->rmse) || is_bound(comparison, summary.name)) return false;
   bool has_others = false;
   for (const TrackerSummary& other : comparison.trackers) {
     const QuantitySummary* its = other.quantity(quantity);
     if (&other == &summary || !its || is_bound(comparison, other.name)) continue;
     has_others = true;
-    if (!(of->rmse <= its->rmse)) return false;
+    if (its->rmse < of->rmse) return false;
   }
   return has_others;
 }
@@ -196,7 +196,8 @@ std::vector<std::string> table_row(const Comparison& comparison, const TrackerSu
 }
 
 // What of that table was published; no row where that is nothing.
-void add_published(const Comparison& comparison, std::vector<std::vector<std::string>>& rows) {
+void add_published(const Comparison& comparison, const TableLayout& layout,
+                   std::vector<std::vector<std::string>>& rows) {
   const auto cell = [](std::optional<double> value) { return value ? figure(*value) : "-"; };
   for (const PublishedRow& published : comparison.published) {
     bool has_any = published.figure("nees").has_value();
@@ -204,7 +205,7 @@ void add_published(const Comparison& comparison, std::vector<std::vector<std::st
     for (const QuantitySummary& column : quantities_of(comparison)) {
       const std::optional<double> rmse = published.figure(column.name);
       has_any |= rmse.has_value();
-      row.insert(row.end(), {cell(rmse), "-"});
+      row.insert(row.end(), {marked(cell(rmse), false, layout), "-"});
       if (comparison.tracker(kPlain)) row.emplace_back("-");
       if (way_to_bound(comparison)) row.emplace_back("-");
     }
@@ -234,7 +235,7 @@ std::string phase_table(const Comparison& comparison, const TableLayout& layout)
 std::string tables(const Comparison& comparison, const TableLayout& layout) {
   std::vector<std::vector<std::string>> rows{heading(comparison)};
   for (const TrackerSummary& summary : comparison.trackers) rows.push_back(table_row(comparison, summary, layout));
-  add_published(comparison, rows);
+  add_published(comparison, layout, rows);
   return aligned(rows, layout) + track_tables(comparison, layout) + phase_table(comparison, layout) +
          time_tables(comparison, layout) + pair_table("paired, per-run RMSE", comparison, MetricTable::figures, layout);
 }

@@ -75,7 +75,8 @@ std::vector<RunPicture> picture_runs(const TrackerSet& trackers, const std::vect
     picture.which = which;
     picture.run = run % options.runs;
     if (scenarios.size() > 1) picture.set = scenario.name;
-    if (options.scoring.assignment) picture.assigned_within = options.scoring.assignment->cutoff;
+    if (options.scoring.assignment && options.scoring.assignment->quantity == picture.component)
+      picture.assigned_within = options.scoring.assignment->cutoff;
     picture.judged_by = drawn.front();
     picture.quantity = comparison.trackers[judge].quantities.front().name;
     picture.rmse = rmse[run];

@@ -19,7 +19,7 @@ struct EqualPieces {
     constexpr Scalar kRounding = Scalar(1e-6);  // of an interval that is one piece long
     const Scalar pieces = std::ceil(dt_s / longest_s - kRounding);
     const bool few = pieces <= kMost;
-    count = few ? std::max(1, static_cast<int>(pieces)) : 1;
+    count = few ? static_cast<int>(std::max(pieces, Scalar(1))) : 1;
     length_s = few ? dt_s / static_cast<Scalar>(count) : std::numeric_limits<Scalar>::quiet_NaN();
   }
 };

@@ -14,10 +14,12 @@ namespace truebearing {
 
 Plot consistency_plot(const SquaredResiduals& residuals, const std::string& name) {
   constexpr std::size_t kLeastWindow = 5, kWindows = 40;
+  constexpr double kMostFreedom = 1e6;
   Plot plot;
   std::vector<std::size_t> told;
   for (std::size_t i = 0; i < std::min(residuals.time_s.size(), residuals.nis.size()); ++i)
-    if (residuals.freedom[i] > 0.0 && std::isfinite(residuals.nis[i])) told.push_back(i);
+    if (residuals.freedom[i] >= 1.0 && residuals.freedom[i] <= kMostFreedom && std::isfinite(residuals.nis[i]))
+      told.push_back(i);
   const std::size_t window = std::max(kLeastWindow, told.size() / kWindows);
   if (told.size() < 2 * window) return plot;
   const PlotClock clock(residuals.time_s);

@@ -103,15 +103,17 @@ Plot innovation_plot(const LogResults& results, std::size_t number) {
   plot.series.push_back({"", {"ideal"}, Shape::line, ends, {0.0, 0.0}});
   plot.series.push_back(innovations_of(tracker, clock, true, "used", tracker_look(0)));
   PlotSeries gated = innovations_of(tracker, clock, false, "not used", tracker_look(1));
-  std::size_t outside = 0;
-  for (const double sigma : plot.series.back().y) outside += std::abs(sigma) > kOf95 ? 1u : 0u;
-  const auto drawn = static_cast<double>(plot.series.back().y.size());
+  double outside = 0.0, used = 0.0;
+  for (std::size_t i = 0; i < tracker.time_s.size(); ++i) {
+    if (tracker.used[i] == 0.0 || !std::isfinite(tracker.sigmas[i])) continue;
+    used += 1.0;
+    outside += std::abs(tracker.sigmas[i]) > kOf95 ? 1.0 : 0.0;
+  }
   plot.caption =
       "Measurement minus prediction, first component, in the standard deviations that the tracker claims of it: 19 of 20 "
       "lie in the band where its claim is right.";
-  if (drawn > 0.0)
-    plot.summary =
-        fmt::format("Outside: {} % of those that were used.", shown(100.0 * static_cast<double>(outside) / drawn, 3));
+  if (used > 0.0)
+    plot.summary = fmt::format("Outside: {} % of those that were used.", shown(100.0 * outside / used, 3));
   double low = -kOf95, high = kOf95;
   for (const std::vector<double>* values : {&plot.series.back().y, &gated.y})
     for (const double y : *values) {

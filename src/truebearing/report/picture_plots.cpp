@@ -50,7 +50,7 @@ void add_beam(const ResultPicture& picture, Plot& plot) {
                       {}});
   const auto shade_of = [&](std::size_t i, std::size_t angle) {
     const double below_dB = picture.below_dB[i][angle];
-    return std::isfinite(below_dB) && below_dB < kShade * kShades ? static_cast<int>(below_dB / kShade) : -1;
+    return below_dB >= 0.0 && below_dB < kShade * kShades ? static_cast<int>(below_dB / kShade) : -1;
   };
   for (std::size_t angle = 0; angle < angle_deg.size(); ++angle)
     for (std::size_t first = 0, next = 0; first < time_s.size(); first = next) {

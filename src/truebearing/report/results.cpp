@@ -183,7 +183,8 @@ ResultFigures read_figures(const ResultReader& json) {
 
 ResultLine read_line(const ResultReader& json) {
   ResultLine line;
-  line.track = static_cast<int>(json.number_or_nan("track"));
+  constexpr double kMost = 1e9;
+  if (const double track = json.number_or_nan("track"); std::abs(track) <= kMost) line.track = static_cast<int>(track);
   line.time_s = json.at("time_s").numbers();
   line.x = json.numbers_or_none("x");
   line.y = json.at("y").numbers();
@@ -235,7 +236,12 @@ ResultPicture read_picture(const ResultReader& json) {
     picture.own_ship = read_line(json.at("own_ship"));
     picture.bearing_deg = json.at("own_ship").numbers_or_none("bearing_deg");
   }
-  for (const ResultReader& track : json.at("tracks").items()) picture.tracks.push_back(read_track(track));
+  for (const ResultReader& track : json.at("tracks").items()) {
+    picture.tracks.push_back(read_track(track));
+    for (const ResultLine& truth : picture.truth)
+      if (truth.x.empty() != picture.tracks.back().line.x.empty())
+        throw track.error("and the truth are not both in the plane");
+  }
   picture.assigned_within = json.number_or_nan("assigned_within");
   if (json.has("beam")) read_beam(json.at("beam"), picture);
   return picture;

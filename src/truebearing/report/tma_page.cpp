@@ -140,7 +140,8 @@ std::string residual_table(const ResultReader& json) {
   };
   const double freedom = residuals.at("degrees_of_freedom").number(),
                ratio = residuals.at("chi_square").number() / freedom;
-  if (!(freedom > 0.0) || !std::isfinite(ratio)) return {};
+  constexpr double kMostFreedom = 1e9;
+  if (!(freedom >= 1.0 && freedom <= kMostFreedom) || !std::isfinite(ratio)) return {};
   const ChiSquareMeans consistent = chi_square_means(freedom, 1.0);
   std::string rows =
       row("squared residuals by their degrees of freedom", ratio,

@@ -86,7 +86,7 @@ const ResultPair* asked(const ResultFigures& figures) {
     const ResultTracker* tracker = figures.tracker(pair.a);
     if (!tracker || tracker->quantities.empty() || tracker->is_bound) continue;
     const double rmse = tracker->quantities.front().rmse;
-    if (first && !(rmse < least)) continue;
+    if (!std::isfinite(rmse) || (first && !(rmse < least))) continue;
     first = &pair;
     least = rmse;
   }
@@ -138,7 +138,12 @@ std::string answer(const Results& results) {
   if (!tracker) return "No tracker has an error that could be scored.";
   std::string text;
   if (const ResultPair* pair = asked(results.all)) text = differences(results.all, pair->a, pair->b);
-  text = text.empty() ? best_of(results.all, *tracker) : "is " + text;
+  if (text.empty()) {
+    if (const ResultTracker* best = best_in(results.all, tracker->quantities.front().name)) tracker = best;
+    text = best_of(results.all, *tracker);
+  } else {
+    text = "is " + text;
+  }
   if (const std::string bound = against_bound(results.all, *tracker); !bound.empty()) text += "; " + bound;
   const double runs = results.runs * static_cast<double>(std::max<std::size_t>(results.sets.size(), 1));
   if (const std::string says = consistency(*tracker, runs); !says.empty())

@@ -15,10 +15,10 @@ namespace {
 constexpr Range kAngle_deg{-360.0, 360.0};
 
 Eigen::Vector3d crossed(const AnyLorenzMotion& motion, Eigen::Vector3d x, double dt_s) {
-  // In parts, for a motion crosses no more than so many of its pieces at once.
-  constexpr double kPart_s = 0.02;
-  for (double left_s = dt_s; left_s > 0.0; left_s -= kPart_s)
-    x = std::visit([&](const auto& model) { return model.f(x, std::min(left_s, kPart_s)); }, motion);
+  // In parts, for a motion crosses no more than so many of its pieces at once; a part is no less than a piece.
+  const double part_s = std::max(0.02, std::visit([](const auto& model) { return model.step_s; }, motion));
+  for (double left_s = dt_s; left_s > 0.0; left_s -= part_s)
+    x = std::visit([&](const auto& model) { return model.f(x, std::min(left_s, part_s)); }, motion);
   return x;
 }
 

@@ -78,8 +78,9 @@ PlanarFlightScenario::SeenFlight PlanarFlightScenario::fly(const std::vector<Loo
     return static_cast<Eigen::Index>(after - times_s.begin());
   };
 
-  Eigen::Index count = 0;  // until the flight ends
+  Eigen::Index count = 0;  // until the flight ends, and the first in any case
   for (const Look& look : looks) count += flight_time(look) <= track.end_s + kRounding * period_s;
+  count = std::max<Eigen::Index>(count, 1);
   SeenFlight seen{Eigen::Matrix4Xd(4, count), Eigen::Matrix2Xd(2, count), Eigen::VectorXd(count)};
   for (Eigen::Index k = 0; k < count; ++k) {
     const Eigen::Index at = column(flight_time(looks[static_cast<std::size_t>(k)]));

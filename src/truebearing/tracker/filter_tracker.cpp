@@ -96,11 +96,12 @@ std::span<const StepRecord> FilterTracker::step(const Measurement& measurement) 
     predict(0.0);
   }
   if (record_.status == StepStatus::ok) record_.status = usable ? update(measurement) : StepStatus::coasted;
+  const bool used = record_.status == StepStatus::ok;  // whether or not what is ahead can be told
   if (!publish()) {
     lost_ = true;
     return give_up();
   }
-  if (record_.status == StepStatus::ok)
+  if (used)
     used_time_s_ = measurement.time_s;
   else
     state_.swap(kept_);
@@ -174,6 +175,7 @@ std::span<const StepRecord> FilterTracker::start_from(const Measurement& measure
   begin(*start);
   pending_.reset();
   clear_blocks();
+  record_.status = StepStatus::ok;
   if (!publish()) {
     ++guard_.counts.failed;
     begun_ = false;
@@ -182,7 +184,6 @@ std::span<const StepRecord> FilterTracker::start_from(const Measurement& measure
   used_time_s_ = measurement.time_s;
   record_.time_s = measurement.time_s;
   record_.sensor = measurement.sensor;
-  record_.status = StepStatus::ok;
   return {&record_, 1};
 }
 
@@ -352,14 +353,15 @@ void FilterTracker::pull(const SizedMeasurement<M>& measurement) {
   spread_ = options_.output_pull * options_.output_pull * left * S * left.transpose();
 }
 
-// False where the state is no track; what it is stands in the record all the same.
+// False where the state is no track; what it is stands in the record all the same. Where it cannot be carried so far
+// ahead, the record says `failed`, and the filter goes on.
 bool FilterTracker::publish() {
-  bool sensible = true;
+  const bool sensible = copy_published(*state_, record_.x, record_.P);
   if (ahead_) {
     ahead_->assign(*state_);
-    sensible = ahead_->predict(options_.ahead_s) == StepStatus::ok;
+    const bool crossed = ahead_->predict(options_.ahead_s) == StepStatus::ok;
+    if (!copy_published(*ahead_, record_.x, record_.P) || !crossed) record_.status = StepStatus::failed;
   }
-  sensible &= copy_published(ahead_ ? *ahead_ : *state_, record_.x, record_.P);
   if (options_.output_pull > 0.0 && record_.gain) {
     record_.x.head(moved_.size()) += moved_;
     record_.P.topLeftCorner(moved_.size(), moved_.size()) += spread_;

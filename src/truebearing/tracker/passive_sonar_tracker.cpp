@@ -75,6 +75,10 @@ bool PassiveSonarTracker::is_good_enough(const StepRecord& record) const {
 }
 
 std::span<const StepRecord> PassiveSonarTracker::collect(const Measurement& measurement) {
+  if (events_before_ > 0 && measurement.time_s < begun_s_) {  // older than the filter that was given up
+    ++counts_before_.out_of_order;
+    return {};
+  }
   Measurement since_begun = measurement;
   since_begun.time_s -= begun_s_;
   const std::span<const StepRecord> records = batch_->step(since_begun);

@@ -150,17 +150,14 @@ EIGEN_ALWAYS_INLINE bool is_positive_semidefinite(const Eigen::Matrix<Scalar, N,
   }
 }
 
-/// Lower triangular L with L L' = A, up to some n eps of the variances; NaN where A is not positive semi-definite, up to
-/// the tolerance of is_positive_semidefinite().
+/// Lower triangular L with L L' = A, up to some n eps of the variances; NaN where A is not positive semi-definite.
 template <int N, typename Scalar>
 Eigen::Matrix<Scalar, N, N> semidefinite_root(const Eigen::Matrix<Scalar, N, N>& A) {
   const Eigen::Matrix<Scalar, N, 1> slack = semidefinite_slack<N, Scalar>(A);
   Eigen::Matrix<Scalar, N, N> L;
   for (int j = 0; j < N; ++j)
     for (int i = 0; i < N; ++i) L(i, j) = i < j ? Scalar(0) : A(i, j);
-  bool valid = true;
   for (int k = 0; k < N; ++k) {
-    valid &= (L(k, k) > -slack(k)) & (L(k, k) <= std::numeric_limits<Scalar>::max());
     const Scalar root = std::sqrt(L(k, k) > slack(k) ? L(k, k) : slack(k));
     for (int i = k + 1; i < N; ++i) L(i, k) /= root;
     for (int i = k + 1; i < N; ++i)
@@ -168,7 +165,7 @@ Eigen::Matrix<Scalar, N, N> semidefinite_root(const Eigen::Matrix<Scalar, N, N>&
     // A variance of zero keeps a root of zero: its slack only served the division.
     L(k, k) = A(k, k) == 0 ? Scalar(0) : root;
   }
-  if (!valid) fill(L, std::numeric_limits<Scalar>::quiet_NaN());
+  if (!is_positive_semidefinite<N, Scalar>(A)) fill(L, std::numeric_limits<Scalar>::quiet_NaN());
   return L;
 }
 

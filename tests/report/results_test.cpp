@@ -58,6 +58,9 @@ TEST(Results, AtFaultSayWhichFileAndWhere) {
   json["pictures"][0]["tracks"][0]["yy"] = {1.0};
   EXPECT_THAT(error_of(json.dump()), HasSubstr("pictures[0].tracks[0]: has columns of unequal length"));
   json = results_json();
+  for (const char* column : {"x", "xx", "xy"}) json["pictures"][0]["tracks"][0].erase(column);
+  EXPECT_THAT(error_of(json.dump()), HasSubstr("pictures[0].tracks[0]: and the truth are not both in the plane"));
+  json = results_json();
   json["trackers"] = ResultJson::object();
   EXPECT_THAT(error_of(json.dump()), HasSubstr("no tracker"));
   json = results_json();

@@ -38,6 +38,16 @@ TEST(Verdict, AsksOfTheTrackerThatErrsLeast) {
   EXPECT_THAT(answer(read(json)), HasSubstr("nfnn is 14 % below tuned"));
 }
 
+TEST(Verdict, IsNotOfATrackerWithoutAnError) {
+  ResultJson json = results_json();
+  const ResultJson pair = json["paired"]["nfnn - tuned"];
+  json["trackers"]["tuned"]["rmse"]["position_m"] = nullptr;
+  json["paired"] = ResultJson::object();
+  json["paired"]["tuned - nfnn"] = pair;
+  json["paired"]["nfnn - tuned"] = pair;
+  EXPECT_THAT(question(read(json)), HasSubstr("Does nfnn err less than tuned?"));
+}
+
 TEST(Verdict, SaysWhereNoDifferenceCanBeTold) {
   ResultJson json = results_json();
   json["paired"]["nfnn - tuned"]["position_m"]["se"] = 14.4;

@@ -87,6 +87,16 @@ TEST(FlightIntervals, AScenarioEndsWithItsFlight) {
   EXPECT_TRUE(testing::variance_fits(moments(speed_change_mps).variance, 4.0, speed_change_mps.size()));
 }
 
+// A recorder keeps positions from before the first look on, which then comes after the end of a flight as short.
+TEST(FlightIntervals, AFlightThatEndsBeforeItsFirstLookIsLookedAtOnce) {
+  PlanarFlightParameters parameters = family();
+  parameters.flight.intervals = FlightIntervals{1.0, 0.1, 0.0, 0.0};
+  parameters.jitter = RecorderJitter{};
+  const Recording recording = PlanarFlightScenario(parameters).simulate({3, Role::evaluation, 0});
+  EXPECT_EQ(recording.measurements.size(), 1u);
+  EXPECT_TRUE(recording.truth[0].x[0].allFinite());
+}
+
 TEST(FlightIntervals, LooksAfterTheEndAreNone) {
   PlanarFlightParameters parameters = family();
   parameters.flight.intervals->count = 1.0;

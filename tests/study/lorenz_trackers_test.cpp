@@ -115,6 +115,20 @@ TEST(LorenzTrackers, AheadOfTimeIsTheNextPrediction) {
   }
 }
 
+// So far ahead that nothing is known there: the records say so, and the filter is none the worse for it.
+TEST(LorenzTrackers, TooFarAheadFailsAndTheFilterGoesOn) {
+  const auto now = make(kMotion + kMeasurement + kStart),
+             ahead = make(kMotion + kMeasurement + "ahead_s = 1000\n" + kStart);
+  for (const Measurement& measurement : run(3).measurements) {
+    const StepRecord& of_now = now->step(measurement)[0];
+    const auto records = ahead->step(measurement);
+    ASSERT_EQ(records.size(), 1u);
+    EXPECT_EQ(records[0].status, StepStatus::failed);
+    EXPECT_EQ(records[0].track, of_now.track);
+    EXPECT_EQ(records[0].innovation->nu, of_now.innovation->nu);
+  }
+}
+
 TEST(LorenzTrackers, LogsAreReadAsTheyWereWritten) {
   const Recording recording = run(4);
   std::istringstream text(write_recording(recording));

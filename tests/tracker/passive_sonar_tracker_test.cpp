@@ -218,6 +218,19 @@ TEST(PassiveSonarTracker, FilterThatFailsIsGivenUpAtOnceAndItsFailuresStayCounte
   EXPECT_EQ(tracker.counts().failed, 3);
 }
 
+TEST(PassiveSonarTracker, RowsOlderThanTheFilterThatWasGivenUpAreOutOfOrder) {
+  const Recording recording = frequency_run(5, 100);
+  PassiveSonarTracker tracker = sonar(recording);
+  for (std::size_t k = 0; k < 83; ++k) {
+    Measurement measurement = recording.measurements[k];
+    if (k >= 80) measurement.sigma.setConstant(kInfinity);
+    tracker.step(measurement);
+  }
+  ASSERT_EQ(kinds(tracker), (std::vector{Kind::handed_over, Kind::given_up}));
+  EXPECT_TRUE(tracker.step(recording.measurements[60]).empty());
+  EXPECT_EQ(tracker.counts().out_of_order, 1);
+}
+
 TEST(PassiveSonarTracker, BeginsAnewAfterAReset) {
   const Recording first = frequency_run(5, 100, 10.0, 480.0);
   PassiveSonarTracker tracker = sonar(first);

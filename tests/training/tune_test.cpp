@@ -153,6 +153,8 @@ tune = ["measurement.matrix", "measurement.sigma"]
   const Study still = Study::load(
       folder.write("still.toml", replaced(replaced(text, "steps = 100", "steps = 1"), "runs = 20", "runs = 1")));
   EXPECT_THAT(error_message([&] { tune(still, "filter", 0); }), HasSubstr("measurement.matrix"));
+  const Study ahead = Study::load(folder.write("ahead.toml", replaced(text, "tune = [", "ahead_s = 0.02\ntune = [")));
+  EXPECT_THAT(error_message([&] { tune(ahead, "filter", 0); }), HasSubstr("ahead_s"));
 }
 
 TEST(Tune, IsTheSameForAnyNumberOfThreads) {

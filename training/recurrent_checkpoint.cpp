@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <utility>
 
+#include "truebearing/core/content_hash.hpp"
 #include "truebearing/core/error.hpp"
 #include "truebearing/io/file.hpp"
 #include "truebearing/io/safetensors.hpp"
@@ -20,7 +21,7 @@ constexpr std::uint64_t kVersion = 1;  // of the training: what another one bega
 
 class Hash {
  public:
-  void take(std::uint64_t value) { hash_ = (hash_ ^ value) * 0x100000001b3U; }  // FNV-1a, by words
+  void take(std::uint64_t value) { hash_.take(value); }
   void take(const auto& matrix) {
     take(static_cast<std::uint64_t>(matrix.rows()));
     for (const float value : matrix.reshaped()) take(std::uint64_t{std::bit_cast<std::uint32_t>(value)});
@@ -39,14 +40,14 @@ class Hash {
   }
   // The upper half of a product is the better mixed one.
   Eigen::Vector4f parts() const {
-    const std::uint64_t mixed = hash_ ^ (hash_ >> 32);
+    const std::uint64_t mixed = hash_.value() ^ (hash_.value() >> 32);
     Eigen::Vector4f parts;
     for (unsigned i = 0; i < 4; ++i) parts[i] = static_cast<float>((mixed >> (16 * i)) & 0xffffU);
     return parts;
   }
 
  private:
-  std::uint64_t hash_ = 0xcbf29ce484222325U;
+  ContentHash hash_;
 };
 
 const std::pair<const char*, std::vector<Eigen::MatrixXf> RecurrentState::*> kParts[] = {

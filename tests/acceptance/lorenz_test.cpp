@@ -16,20 +16,14 @@ namespace {
 
 using testing::load_study;
 
-struct Decibels {
-  double mse = 0.0;
-  double se = 0.0;
-};
-
 // Of the mean over components, steps and runs of the squared error.
-Decibels decibels(const Comparison& comparison, const std::string& tracker) {
-  const QuantitySummary& state = *comparison.tracker(tracker)->quantity("state");
-  return {20.0 * std::log10(state.rmse) - 10.0 * std::log10(3.0), 20.0 / std::log(10.0) * state.rmse_se / state.rmse};
+Metric decibels(const Comparison& comparison, const std::string& tracker) {
+  return testing::metric(comparison, tracker, "mse_db", 0.0);
 }
 
 void expect_below(const Comparison& comparison, const std::string& tracker, double bar) {
-  const Decibels found = decibels(comparison, tracker);
-  EXPECT_LT(found.mse, bar + 2.0 * found.se) << tracker;
+  const Metric found = decibels(comparison, tracker);
+  EXPECT_LT(found.value, bar + 2.0 * found.se) << tracker;
 }
 
 Comparison run(const std::string& name, std::size_t runs, const std::vector<std::string>& sets) {
@@ -46,22 +40,22 @@ Comparison run(const std::string& name, std::size_t runs, const std::vector<std:
 
 TEST(Lorenz, MismatchIsReproducedAndLearned) {
   const Comparison published = run("lorenz_mismatch", 2, {"published"});
-  const Decibels ekf = decibels(published, "ekf");
-  EXPECT_NEAR(ekf.mse, -6.32, 0.15 + 2.0 * ekf.se);
+  const Metric ekf = decibels(published, "ekf");
+  EXPECT_NEAR(ekf.value, -6.32, 0.15 + 2.0 * ekf.se);
   const Comparison fresh = run("lorenz_mismatch", 2, {"fresh"});
   for (const Comparison& comparison : {published, fresh}) {
     expect_below(comparison, "rk4_tuned", -14.3);
     expect_below(comparison, "learned", -14.0);
-    EXPECT_LT(decibels(comparison, "gru").mse, -12.0);
-    EXPECT_LT(decibels(comparison, "learned").mse, decibels(comparison, "tuned").mse - 2.0);
+    EXPECT_LT(decibels(comparison, "gru").value, -12.0);
+    EXPECT_LT(decibels(comparison, "learned").value, decibels(comparison, "tuned").value - 2.0);
   }
 }
 
 TEST(Lorenz, RotationIsFittedFromPairs) {
   const Comparison comparison = run("lorenz_rotated", 8, {"long"});
   expect_below(comparison, "fitted", -40.0);
-  EXPECT_GT(decibels(comparison, "ekf").mse, -20.0);
-  EXPECT_NEAR(decibels(comparison, "fitted").mse, decibels(comparison, "aligned").mse, 0.1);
+  EXPECT_GT(decibels(comparison, "ekf").value, -20.0);
+  EXPECT_NEAR(decibels(comparison, "fitted").value, decibels(comparison, "aligned").value, 0.1);
 }
 
 // Below every printed row at all four levels of noise: RMSE per component.

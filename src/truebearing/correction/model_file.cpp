@@ -7,6 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "truebearing/core/content_hash.hpp"
 #include "truebearing/core/error.hpp"
 #include "truebearing/core/suggestion.hpp"
 #include "truebearing/correction/correction_bounds.hpp"
@@ -186,14 +187,14 @@ CorrectionModel parse_model(std::string_view text, const std::string& name) {
 std::string weights_name(const CorrectionModel& model) {
   const auto* network = std::get_if<GatedRecurrent>(&model.network);
   if (!network) return {};
-  std::uint64_t hash = 0xcbf29ce484222325U;  // FNV-1a
-  for (const char byte : gated_recurrent_weights(*network))
-    hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3U;
+  ContentHash hash;
+  for (const char byte : gated_recurrent_weights(*network)) hash.take(static_cast<unsigned char>(byte));
   const auto said = [&](const char* key, const char* otherwise) {
     const auto found = model.provenance.find(key);
     return found == model.provenance.end() ? std::string(otherwise) : found->second;
   };
-  return fmt::format("{}.{}.{:08x}{}", said("study", "model"), said("tracker", "gru"), hash >> 32, kWeightsEnding);
+  return fmt::format("{}.{}.{:08x}{}", said("study", "model"), said("tracker", "gru"), hash.value() >> 32,
+                     kWeightsEnding);
 }
 
 void write_model_file(const std::filesystem::path& path, const CorrectionModel& model) {

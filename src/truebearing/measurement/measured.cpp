@@ -16,6 +16,10 @@ Measured Measured::position(int dimensions) {
   return {"position", {"east_m", "north_m"}};
 }
 
+Measured Measured::position_velocity() {
+  return {"position_velocity", {"position_m", "velocity_mps"}};
+}
+
 Measured Measured::range_bearing() {
   return {"range_bearing", {"range_m", "bearing_deg"}};
 }
@@ -41,8 +45,8 @@ Measured Measured::step_log(const StateSpace& space) {
 }
 
 Measured Measured::of(std::vector<std::string> components) {
-  for (Measured known :
-       {position(1), position(2), range_bearing(), bearing(), bearing_frequency(), lorenz(), snapshots()})
+  for (Measured known : {position(1), position(2), position_velocity(), range_bearing(), bearing(), bearing_frequency(),
+                         lorenz(), snapshots()})
     if (known.components == components) return known;
   return {kValues, std::move(components)};
 }

@@ -22,6 +22,8 @@ struct Measured {
 
   /// On a line (1 dimension) "position_m", in the plane (2) "east_m" and "north_m".
   static Measured position(int dimensions);
+  /// On a line.
+  static Measured position_velocity();
   static Measured range_bearing();
   static Measured bearing();
   static Measured bearing_frequency();

@@ -33,7 +33,7 @@ PlotSeries per_cent(const std::string& name, std::size_t look, const std::vector
   return line;
 }
 
-double mean_of(const std::vector<double>& values) {
+double mean_where_known(const std::vector<double>& values) {
   double sum = 0.0, count = 0.0;
   for (const double value : values)
     if (std::isfinite(value)) {
@@ -54,8 +54,8 @@ Plot held_back_plot(const ResultTracker& tracker, const std::string& id) {
   const std::vector<double> time_s = clock.from(tracker.time_s);
   const auto add = [&](const char* name, const std::vector<double>& shares, bool of_what_is_left) {
     PlotSeries line = per_cent(name, plot.series.size(), time_s, shares, of_what_is_left);
-    plot.summary +=
-        fmt::format("{}{} {} %", plot.summary.empty() ? "On average: " : ", ", name, shown(mean_of(line.y), 3));
+    plot.summary += fmt::format("{}{} {} %", plot.summary.empty() ? "On average: " : ", ", name,
+                                shown(mean_where_known(line.y), 3));
     plot.series.push_back(std::move(line));
   };
   const auto ever_below_one = [](const std::vector<double>& weights) {
@@ -115,8 +115,9 @@ Plot length_plot(const ResultTracker& tracker, const std::string& id) {
                            {correction.kappa, correction.kappa}});
   plot.caption =
       "Mean Mahalanobis distance from what was trusted, by its covariance: before kappa, gate and referee, and after.";
-  plot.summary = fmt::format("On average {} wanted, {} published.", shown(mean_of(correction.wanted_sigmas), 3),
-                             shown(mean_of(correction.moved_sigmas), 3));
+  plot.summary =
+      fmt::format("On average {} wanted, {} published.", shown(mean_where_known(correction.wanted_sigmas), 3),
+                  shown(mean_where_known(correction.moved_sigmas), 3));
   return plot;
 }
 

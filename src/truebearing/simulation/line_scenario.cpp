@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "truebearing/core/constants.hpp"
-#include "truebearing/measurement/position_velocity.hpp"
 
 namespace truebearing {
 namespace {
@@ -35,7 +34,7 @@ NoiseMixture read_mixture(TableReader table) {
 }  // namespace
 
 std::optional<Measured> LineScenario::measured() const {
-  return parameters_.velocity_sigma_mps ? PositionVelocity<>::measured() : Measured::position(1);
+  return parameters_.velocity_sigma_mps ? Measured::position_velocity() : Measured::position(1);
 }
 
 Recording LineScenario::simulate(const RunKey& key) const {

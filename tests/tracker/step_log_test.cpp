@@ -164,19 +164,19 @@ TEST(StepLog, TrackerThatIsNotInItIsRefused) {
 
 TEST(StepLog, TooManyComponentsAreRefused) {
   std::string header = "time_s,track", row = "1,0";
-  for (int i = 1; i <= 9; ++i) {
+  for (int i = 1; i <= 11; ++i) {
     header += ",x_c" + std::to_string(i);
     row += ",1";
   }
-  EXPECT_THAT(error_of(header + "\n" + row + "\n"), HasSubstr("1 to 8"));
+  EXPECT_THAT(error_of(header + "\n" + row + "\n"), HasSubstr("1 to 10"));
   header = "time_s,track,x_range_m,P_1_1";
   row = "1,0,1,1";
   for (const char* name : {"z", "nu"})
-    for (int i = 1; i <= 9; ++i) {
+    for (int i = 1; i <= 11; ++i) {
       header += "," + std::string(name) + "_" + std::to_string(i);
       row += ",1";
     }
-  EXPECT_THAT(error_of(header + "\n" + row + "\n"), HasSubstr("at most 8"));
+  EXPECT_THAT(error_of(header + "\n" + row + "\n"), HasSubstr("at most 10"));
 }
 
 TEST(StepLog, MeasurementAndTruthAreReadWhereTheyAre) {

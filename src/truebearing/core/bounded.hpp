@@ -11,7 +11,7 @@ static_assert(EIGEN_MAX_ALIGN_BYTES == 16 && EIGEN_MAX_STATIC_ALIGN_BYTES == 16,
 
 namespace truebearing {
 
-inline constexpr int kMaxDimension = 8;
+inline constexpr int kMaxDimension = 10;
 
 using BoundedVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxDimension, 1>;
 using BoundedMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxDimension, kMaxDimension>;

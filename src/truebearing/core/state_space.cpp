@@ -34,6 +34,13 @@ const StateSpace& plane_space() {
   return space;
 }
 
+const StateSpace& space_space() {
+  static const StateSpace space{"space",
+                                {"east_m", "north_m", "up_m", "east_mps", "north_mps", "up_mps"},
+                                {{"position_m", {0, 1, 2}}, {"velocity_mps", {3, 4, 5}}}};
+  return space;
+}
+
 const StateSpace& plane_frequency_space() {
   static const StateSpace space{"plane_frequency",
                                 {"east_m", "north_m", "east_mps", "north_mps", "frequency_hz"},
@@ -59,14 +66,14 @@ bool begins_in_plane(const StateSpace& space) {
 
 const StateSpace* find_state_space(std::string_view name) {
   for (const StateSpace* space :
-       {&line_space(), &plane_space(), &plane_frequency_space(), &angle_space(), &lorenz_space()})
+       {&line_space(), &plane_space(), &space_space(), &plane_frequency_space(), &angle_space(), &lorenz_space()})
     if (space->name == name) return space;
   return nullptr;
 }
 
 const StateSpace& state_space_of_components(const std::vector<std::string>& components) {
   for (const StateSpace* space :
-       {&line_space(), &plane_space(), &plane_frequency_space(), &angle_space(), &lorenz_space()})
+       {&line_space(), &plane_space(), &space_space(), &plane_frequency_space(), &angle_space(), &lorenz_space()})
     if (space->components == components) return *space;
   if (components.empty() || components.size() > kMaxDimension)
     throw InputError("state", "has " + std::to_string(components.size()) + " components",

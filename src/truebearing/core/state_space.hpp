@@ -34,6 +34,8 @@ const StateSpace& line_space();
 const StateSpace& plane_space();
 /// [east_m, north_m, east_mps, north_mps, frequency_hz]: the same, and the frequency that the target radiates.
 const StateSpace& plane_frequency_space();
+/// [east_m, north_m, up_m, east_mps, north_mps, up_mps]: a target above the plane.
+const StateSpace& space_space();
 /// [angle_rad, rate_radps]: the direction to a target, and its rate; reported in degrees.
 const StateSpace& angle_space();
 /// [lorenz_x, lorenz_y, lorenz_z]: the Lorenz attractor, without units; reported as one quantity, "state".

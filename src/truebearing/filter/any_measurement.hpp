@@ -13,7 +13,7 @@
 
 namespace truebearing {
 
-inline constexpr int kMaxMeasurements = 3;  ///< m that filters behind trackers are compiled for
+inline constexpr int kMaxMeasurements = 4;  ///< m that filters behind trackers are compiled for
 
 /// A measurement of any length.
 class AnyMeasurement {
@@ -137,14 +137,16 @@ struct MeasurementOn {
 /// use(measurement) with its length known.
 template <typename Use>
 auto with_length(const AnyMeasurement& measurement, const Use& use) {
-  static_assert(kMaxMeasurements == 3);
+  static_assert(kMaxMeasurements == 4);
   switch (measurement.size()) {
     case 1:
       return use(static_cast<const SizedMeasurement<1>&>(measurement));
     case 2:
       return use(static_cast<const SizedMeasurement<2>&>(measurement));
-    default:
+    case 3:
       return use(static_cast<const SizedMeasurement<3>&>(measurement));
+    default:
+      return use(static_cast<const SizedMeasurement<4>&>(measurement));
   }
 }
 

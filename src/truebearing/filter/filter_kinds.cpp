@@ -21,12 +21,11 @@ template <int N>
 using ModifiedGain = ModifiedGainFilter<N>;
 
 // make(std::integral_constant<int, states>()), nullptr where nothing is compiled for that many.
-template <int kLeast, typename Made, typename Make>
+template <int kLeast, int kMost, typename Made, typename Make>
 std::unique_ptr<Made> by_length(int states, const Make& make) {
-  constexpr int kMost = 7;
   std::unique_ptr<Made> made;
   with_count(states, [&]<int N>(std::integral_constant<int, N> n) {
-    if constexpr (N >= kLeast && N <= kMost) made = make(n);
+    if constexpr (N >= kLeast && N <= kMost && N != 8) made = make(n);
   });
   return made;
 }
@@ -36,10 +35,10 @@ std::unique_ptr<TrackedState> one(const std::shared_ptr<const AnyMotion>& motion
   return std::make_unique<FilterState<Filter>>(std::static_pointer_cast<const SizedMotion<Filter::kStates>>(motion));
 }
 
-template <template <int> typename Filter, int kLeast = 2>
+template <template <int> typename Filter, int kLeast = 2, int kMost = 9>
 std::unique_ptr<TrackedState> state(const std::shared_ptr<const AnyMotion>& motion) {
-  return by_length<kLeast, TrackedState>(motion->states(),
-                                         [&]<int N>(std::integral_constant<int, N>) { return one<Filter<N>>(motion); });
+  return by_length<kLeast, kMost, TrackedState>(
+      motion->states(), [&]<int N>(std::integral_constant<int, N>) { return one<Filter<N>>(motion); });
 }
 
 template <typename Filter>
@@ -50,9 +49,9 @@ std::unique_ptr<FilterGroup> several(const AnyMotions& motions, const std::vecto
   return std::make_unique<FilterGroupOf<Filter>>(std::move(sized), motion_of);
 }
 
-template <template <int> typename Filter, int kLeast = 2>
+template <template <int> typename Filter, int kLeast = 2, int kMost = 9>
 std::unique_ptr<FilterGroup> group(const AnyMotions& motions, const std::vector<std::size_t>& motion_of) {
-  return by_length<kLeast, FilterGroup>(motions.front()->states(), [&]<int N>(std::integral_constant<int, N>) {
+  return by_length<kLeast, kMost, FilterGroup>(motions.front()->states(), [&]<int N>(std::integral_constant<int, N>) {
     return several<Filter<N>>(motions, motion_of);
   });
 }
@@ -70,7 +69,7 @@ std::unique_ptr<TrackedState> make_filter_state(FilterKind kind, const std::shar
     case FilterKind::unscented:
       return state<Unscented>(motion);
     case FilterKind::modified_gain:
-      return state<ModifiedGain, 4>(motion);
+      return state<ModifiedGain, 4, 7>(motion);
     case FilterKind::log_polar:
       return motion->states() == 4 ? one<LogPolarFilter<>>(motion) : nullptr;
   }
@@ -85,7 +84,7 @@ std::unique_ptr<FilterGroup> make_filter_group(FilterKind kind, const AnyMotions
     case FilterKind::unscented:
       return group<Unscented>(motions, motion_of);
     case FilterKind::modified_gain:
-      return group<ModifiedGain, 4>(motions, motion_of);
+      return group<ModifiedGain, 4, 7>(motions, motion_of);
     case FilterKind::log_polar:
       return motions.front()->states() == 4 ? several<LogPolarFilter<>>(motions, motion_of) : nullptr;
     case FilterKind::square_root:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The filters that stand behind the seam of tracked_state.hpp, made by their kind and the length of a motion's state: 2
-// to 7 components. Each is compiled once (*_states.cpp); a filter of one's own joins by FilterState.
+// to 7 components, or 9. Each is compiled once (*_states.cpp); a filter of one's own joins by FilterState.
 #pragma once
 
 #include <cstddef>
@@ -37,16 +37,17 @@ std::unique_ptr<TrackedState> make_filter_state(FilterKind kind, const std::shar
 std::unique_ptr<FilterGroup> make_filter_group(FilterKind kind, const AnyMotions& motions,
                                                const std::vector<std::size_t>& motion_of);
 
-// WORDS TYPE(n) for each length of a state: on the line 2 and 3, in the plane 4 to 7.
+// WORDS TYPE(n) for each length of a state: on the line 2 and 3, in the plane 4 to 7, in space 6, 7 and 9.
 #define TRUEBEARING_EACH_PLANE_LENGTH(WORDS, TYPE) \
   WORDS TYPE(4);                                   \
   WORDS TYPE(5);                                   \
   WORDS TYPE(6);                                   \
   WORDS TYPE(7)
-#define TRUEBEARING_EACH_LENGTH(WORDS, TYPE) \
-  WORDS TYPE(2);                             \
-  WORDS TYPE(3);                             \
-  TRUEBEARING_EACH_PLANE_LENGTH(WORDS, TYPE)
+#define TRUEBEARING_EACH_LENGTH(WORDS, TYPE)  \
+  WORDS TYPE(2);                              \
+  WORDS TYPE(3);                              \
+  TRUEBEARING_EACH_PLANE_LENGTH(WORDS, TYPE); \
+  WORDS TYPE(9)
 #define TRUEBEARING_KALMAN_STATE(N) FilterState<KalmanFilter<N>>
 #define TRUEBEARING_SQUARE_ROOT_STATE(N) FilterState<KalmanFilter<N, SquareRoot>>
 #define TRUEBEARING_CONVENTIONAL_STATE(N) FilterState<KalmanFilter<N, Conventional>>

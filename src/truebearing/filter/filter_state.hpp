@@ -26,10 +26,14 @@ namespace detail {
 template <int N, int M>
 inline constexpr bool kHasPositionForm = M == (N <= 3 ? 1 : 2) && N <= 6;
 
+/// Four components at once are measured of targets in space alone.
+template <int N, int M>
+inline constexpr bool kTakesLength = M <= 3 || N >= 6;
+
 template <typename Filter, int M>
 [[gnu::noinline]] Update<Filter::kStates, M> update_by_any(Filter& filter, const SizedMeasurement<M>& measurement) {
   constexpr int N = Filter::kStates;
-  if constexpr (requires { filter.update(MeasurementOn<N, M>{measurement}, measurement.z); }) {
+  if constexpr (kTakesLength<N, M> && requires { filter.update(MeasurementOn<N, M>{measurement}, measurement.z); }) {
     return filter.update(MeasurementOn<N, M>{measurement}, measurement.z);
   } else {
     if constexpr (M == 1)  // a filter of bearings alone, which asks for more than h and H

@@ -17,6 +17,8 @@ struct StepRecord;
 struct SensorState {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< East, North
   Eigen::Vector2d velocity_mps = Eigen::Vector2d::Zero();
+  double up_m = 0.0;  ///< of targets in three dimensions
+  double climb_mps = 0.0;
 };
 
 /// What is believed of a target beforehand: an operator's guess as it is first heard.
@@ -32,6 +34,7 @@ struct Measurement {
   BoundedVector z;      ///< in the units of the measured columns, angles in radians; NaN where a value is missing
   BoundedVector sigma;  ///< standard deviations of z, or empty where the tracker's own apply
   std::optional<SensorState> sensor;
+  int source = 0;  ///< which sensor took it, by its place among those of the study; 0 where there is one
   std::optional<TargetGuess> guess{};
   /// What a tracker that ran elsewhere made of this measurement, where a step log tells; owned by the Recording.
   const StepRecord* recorded = nullptr;

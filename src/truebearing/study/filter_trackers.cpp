@@ -39,7 +39,7 @@ std::unique_ptr<TrackedState> state_under(const TableReader& tracker, FilterKind
   if (!state)
     throw tracker.error("motion",
                         fmt::format("has a state of {} components, which this filter does not take", motion->states()),
-                        filter == FilterKind::log_polar ? "constant_velocity or coordinated_turn" : "2 to 7");
+                        filter == FilterKind::log_polar ? "constant_velocity or coordinated_turn" : "2 to 7, or 9");
   return state;
 }
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "truebearing/study/unfiltered_trackers.hpp"
 
+#include <fmt/format.h>
 #include <string>
 #include <vector>
 
+#include "truebearing/core/bounded.hpp"
 #include "truebearing/tracker/raw_tracker.hpp"
 #include "truebearing/tracker/recorded_tracker.hpp"
 
@@ -12,7 +14,7 @@ namespace truebearing {
 std::unique_ptr<Tracker> make_raw_tracker(TableReader& table) {
   const std::vector<std::string> components = table.texts("components");
   const std::vector<double> sigma = table.numbers("sigma", static_cast<int>(components.size()), kPositive);
-  if (components.size() > kMaxDimension) throw table.error("components", "are too many", "at most 8");
+  if (components.size() > kMaxDimension) throw table.error("components", "are too many", fmt::format("at most {}", kMaxDimension));
   return std::make_unique<RawTracker>(
       state_space_of_components(components),
       BoundedVector(Eigen::Map<const Eigen::VectorXd>(sigma.data(), static_cast<Eigen::Index>(sigma.size()))));

@@ -69,6 +69,7 @@ struct StepRecord {
   std::optional<BoundedMatrix> gain;             ///< K (n x m)
   std::optional<ModeVector> mode_probabilities;  ///< of a multiple-model tracker
   std::optional<SensorState> sensor;
+  int source = 0;                               ///< which sensor took the measurement; see Measurement
   std::optional<Neighbour> neighbour;           ///< of a tracker of several targets, where it follows another
   std::optional<CorrectionOutcome> correction;  ///< of a corrected tracker
   std::optional<BatchOutcome> batch;            ///< of a batch estimator, at steps at which it solved

@@ -80,8 +80,16 @@ class Tracker {
   /// valid until the next call on this tracker. Does not throw on data and does not allocate after the first steps.
   virtual std::span<const StepRecord> step(const Measurement& measurement) = 0;
 
+  /// All measurements of a run, after reset() and before the first step: for those that look back from its end, as
+  /// smoothers do. Others hear nothing of it.
+  virtual void foresee(std::span<const Measurement>) {}
+
   /// Back to the state after construction.
   virtual void reset() = 0;
+
+  /// Becomes a copy of `other`, as it stands, which was made by fresh() from this one or from the same. False, and
+  /// nothing done, where that cannot be.
+  virtual bool assign(const Tracker&) { return false; }
 
   /// An independent tracker in the state after construction.
   virtual std::unique_ptr<Tracker> fresh() const = 0;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -20,6 +21,7 @@
 #include "app/track_output.hpp"
 #include "app/track_report.hpp"
 #include "truebearing/array/recorded_array.hpp"
+#include "truebearing/evaluation/late_rows.hpp"
 #include "truebearing/evaluation/report.hpp"
 #include "truebearing/evaluation/time_steps.hpp"
 #include "truebearing/io/csv.hpp"
@@ -43,6 +45,7 @@ struct TrackArguments {
   std::string json;
   std::string events;
   LogArguments reading;
+  double late_s = -1.0;  // not given
   ReportArguments report;
 
   /// What is for programs or for a page: scores where the log has truth, else what can be said without.
@@ -57,9 +60,11 @@ struct TrackArguments {
 // The trackers on a log: what they do is written, counted and remembered for the report.
 class TrackRun {
  public:
-  TrackRun(const Study& study, const TrackArguments& options, int measured) : trackers_(study.make_tracker_set()) {
+  TrackRun(const Study& study, const TrackArguments& options, int measured, const RecordingOptions& reading = {})
+      : trackers_(study.make_tracker_set()), sources_(reading.sources) {
+    if (reading.late_keep_s > 0.0) late_.emplace(trackers_, reading.late_keep_s);
     for (int i = 0; i < trackers_.size(); ++i) all_.emplace_back().name = trackers_.name(i);
-    if (!options.output.empty()) records_.emplace(options.output, trackers_, measured);
+    if (!options.output.empty()) records_.emplace(options.output, trackers_, measured, sources_, late_.has_value());
     if (!options.events.empty()) events_.emplace(options.events);
   }
 
@@ -80,14 +85,24 @@ class TrackRun {
     ++contents_.measurements;
     contents_.guess |= measurement.guess.has_value();
     contents_.last_time_s = measurement.time_s;
-    if (contents_.epoch_s == 0.0) {
-      trackers_.step(measurement);
-    } else {
-      Measurement timed = measurement;
-      timed.time_s -= contents_.epoch_s;
-      trackers_.step(timed);
+    if (late_) {
+      late_->step(trackers_, in_study_time(measurement), [&](const Measurement& taken, bool revised) {
+        for (std::size_t i = 0; i < all_.size(); ++i) take(i, taken.time_s + contents_.epoch_s, revised);
+      });
+      return;
     }
-    for (std::size_t i = 0; i < all_.size(); ++i) take(i, measurement.time_s);
+    if (contents_.epoch_s == 0.0)
+      trackers_.step(measurement);
+    else
+      trackers_.step(in_study_time(measurement));
+    for (std::size_t i = 0; i < all_.size(); ++i) take(i, measurement.time_s, false);
+  }
+
+  // What became of late rows; empty where there were none.
+  std::string late_note() const {
+    if (!late_ || late_->taken() + late_->too_late() == 0) return {};
+    return fmt::format("{} late rows put where they belong, {} steps run again for them, {} rows too late",
+                       late_->taken(), late_->again(), late_->too_late());
   }
 
   void flush() {
@@ -120,6 +135,11 @@ class TrackRun {
     sum.failed += counts.failed;
   }
 
+  Measurement in_study_time(Measurement measurement) const {
+    measurement.time_s -= contents_.epoch_s;
+    return measurement;
+  }
+
   bool is_as_in_log() const { return number_ == 0 && contents_.epoch_s == 0.0; }
 
   // A record of the step at time_s with the track's number and the time that the log has.
@@ -129,9 +149,9 @@ class TrackRun {
     return record;
   }
 
-  void take(std::size_t i, double time_s) {
+  void take(std::size_t i, double time_s, bool revised) {
     for (const StepRecord& record : trackers_.records(static_cast<int>(i)))
-      is_as_in_log() ? take(i, record) : take(i, as_in_log(record, time_s));
+      is_as_in_log() ? take(i, record, revised) : take(i, as_in_log(record, time_s), revised);
     const std::span<const TrackEvent> events = trackers_.events(static_cast<int>(i));
     seen_events_.resize(all_.size());
     for (; seen_events_[i] < events.size(); ++seen_events_[i]) {
@@ -142,13 +162,18 @@ class TrackRun {
     }
   }
 
-  void take(std::size_t i, const StepRecord& record) {
+  void take(std::size_t i, const StepRecord& record, bool revised) {
+    if (records_) records_->add(all_[i].name, record, revised);
+    if (revised) return;  // it has been counted
     ++all_[i].records;
     all_[i].innovations.add(record);
-    if (records_) records_->add(all_[i].name, record);
+    if (!sources_.empty() && record.innovation)
+      all_[i].of_sensors[sources_[static_cast<std::size_t>(record.source)].name].add(record);
   }
 
   TrackerSet trackers_;
+  std::optional<LateRows> late_;
+  std::vector<Source> sources_;
   std::vector<Followed> all_;
   std::optional<RecordOutput> records_;
   std::optional<EventOutput> events_;
@@ -302,13 +327,31 @@ void track_snapshots(const Study& study, const TrackArguments& options) {
   finish(study, options, run, rows, std::move(logs));
 }
 
+// Rows that came late, where they belong.
+void sort_by_time(Recording& recording) {
+  std::vector<std::size_t> order(recording.measurements.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return recording.measurements[a].time_s < recording.measurements[b].time_s;
+  });
+  const auto sorted = [&](const auto& unsorted) {
+    auto values = unsorted;
+    for (std::size_t k = 0; k < values.size(); ++k) values[k] = unsorted[order[k]];
+    return values;
+  };
+  recording.measurements = sorted(recording.measurements);
+  recording.line = sorted(recording.line);
+  for (Truth& truth : recording.truth) truth.x = sorted(truth.x);
+}
+
 void track_rows(const Study& study, const TrackArguments& options) {
-  const RecordingOptions reading = options.reading.over(study.recording_options());
+  RecordingOptions reading = options.reading.over(study.recording_options());
+  if (options.late_s >= 0.0) reading.late_keep_s = options.late_s;
   MeasurementLog reader(with_names(CsvReader(std::filesystem::path(options.log)), reading), reading);
   check_measured(reader.measured(), study.scenario(), options.log);
   // Whoever is only given the records needs no scores, and the log has no end that could be waited for.
   const bool keeps = options.wants_results() || (reader.truth_space() && !options.only_text_for_programs());
-  TrackRun run(study, options, static_cast<int>(reader.measured().size()));
+  TrackRun run(study, options, static_cast<int>(reader.measured().size()), reading);
   Recording recording;
   for (bool first = true; reader.next(); first = false) {
     if (first) {
@@ -322,8 +365,10 @@ void track_rows(const Study& study, const TrackArguments& options) {
   }
   run.end_track(reader.counts());
   print_note(options.log, reader.findings().note());
+  print_note(options.log, run.late_note());
   KeptLogs logs;
   if (keeps) {
+    if (reading.late_keep_s > 0.0) sort_by_time(recording);
     reader.complete(recording);
     logs.emplace_back(0, std::move(recording));
   }
@@ -364,6 +409,11 @@ void add_track(const Subcommands& all) {
                    "write what the trackers noticed (turns, a source's jumps, ...) as CSV; - is standard output");
   add_report_arguments(command, options->report);
   add_log_arguments(command, options->reading);
+  command
+      .argument("--late", options->late_s,
+                "take rows as they come, and those that are up to so many seconds late where they belong, by running "
+                "the steps after them again")
+      .non_negative();
   command.runs([options] { track(*options); });
 }
 

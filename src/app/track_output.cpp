@@ -13,13 +13,29 @@ const StateSpace* widest(const TrackerSet& trackers) {
   return &trackers.space(widest);
 }
 
+// What an innovation has at most.
+int longest(int measured, const std::vector<Source>& sources) {
+  std::size_t most = sources.empty() ? static_cast<std::size_t>(std::max(measured, 1)) : 1;
+  for (const Source& source : sources) most = std::max(most, source.components.size());
+  return static_cast<int>(most);
+}
+
+std::vector<std::string> names_of(const std::vector<Source>& sources) {
+  std::vector<std::string> names;
+  for (const Source& source : sources) names.push_back(source.name);
+  return names;
+}
+
 }  // namespace
 
-RecordOutput::RecordOutput(const std::string& path, const TrackerSet& trackers, int measured)
-    : output_(path), space_(widest(trackers)), writer_(*space_, std::max(measured, 1)) {}
+RecordOutput::RecordOutput(const std::string& path, const TrackerSet& trackers, int measured,
+                           const std::vector<Source>& sources, bool late)
+    : output_(path),
+      space_(widest(trackers)),
+      writer_(*space_, StepLogWriter::Columns{longest(measured, sources), names_of(sources), late}) {}
 
-void RecordOutput::add(const std::string& name, const StepRecord& record) {
-  if (record.space == space_) writer_.add(name, record);
+void RecordOutput::add(const std::string& name, const StepRecord& record, bool revised) {
+  if (record.space == space_) writer_.add(name, record, revised);
   if (!waits_) output_.write(writer_.take());
 }
 

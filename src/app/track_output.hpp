@@ -14,13 +14,15 @@ namespace truebearing {
 /// Writes the records of all trackers whose state is the largest, as they come.
 class RecordOutput {
  public:
-  /// measured: columns of the log, as many as an innovation has components; or 0.
-  RecordOutput(const std::string& path, const TrackerSet& trackers, int measured);
+  /// measured: columns of the log, as many as an innovation has components; or 0. sources: of several sensors. late: rows may be
+  /// written again, marked as revised.
+  RecordOutput(const std::string& path, const TrackerSet& trackers, int measured, const std::vector<Source>& sources,
+               bool late);
 
   /// The tracks of several are only in order when all are there.
   void wait_for_all() { waits_ = true; }
 
-  void add(const std::string& name, const StepRecord& record);
+  void add(const std::string& name, const StepRecord& record, bool revised = false);
   void flush() { output_.flush(); }
   void finish();
 

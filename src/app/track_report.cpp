@@ -99,6 +99,9 @@ std::string consistency_table(const std::vector<Followed>& all) {
                     correlation_of(followed.innovations), fmt::format("{}", counts.missing),
                     fmt::format("{}", counts.repeated), fmt::format("{}", counts.gated),
                     fmt::format("{}", counts.failed)});
+    for (const auto& [sensor, innovations] : followed.of_sensors)
+      rows.push_back({"  by " + sensor, fmt::format("{}", innovations.steps()), nis_of(innovations),
+                      correlation_of(innovations), "", "", "", ""});
   }
   std::string text = aligned(rows);
   if (text.find(" *") != std::string::npos) text += "* outside: not as large as the tracker claims, or not white\n";

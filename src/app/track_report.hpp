@@ -2,6 +2,7 @@
 // What `truebearing track` says of the trackers that it ran, for people; and of a log without truth, for programs.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct Followed {
   std::string name;
   long records = 0;
   InnovationConsistency innovations;
+  std::map<std::string, InnovationConsistency> of_sensors;  ///< the same of each of several; empty where there is one
   TrackerCounts counts;
   std::vector<TrackEvent> events;  ///< times are those of the log
   std::vector<StepRecord> last;    ///< of the last step; empty where the track had ended, or none began

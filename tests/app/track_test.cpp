@@ -272,5 +272,65 @@ TEST(Track, CorrectedTrackerIsNotShownAsIdle) {
   EXPECT_THAT(outcome.out, AllOf(::testing::ContainsRegex("\nnfnn +119 +- "), HasSubstr("as corrections")));
 }
 
+const std::string kTwoSensors = R"(name = "two sensors"
+[scenario]
+kind = "planar_flight"
+period_s = 1.0
+steps = 20
+flight = { speed_mps = 100.0, leg_s = 1e5, turn_s = 1.0, turn_rate_degps = 0.0, roll_in_s = 0.0 }
+sensors = { plots = { output = "plane", position_sigma_m = 10.0, period_s = 2.0 }, radar = { output = "range_bearing", range_sigma_m = 20.0, bearing_sigma_deg = 1.0, period_s = 2.0 } }
+[sensors.radar]
+model = "range_bearing"
+range_sigma_m = 20.0
+bearing_sigma_deg = 1.0
+[sensors.plots]
+model = "position"
+sigma_m = 10.0
+[trackers.both]
+kind = "kalman"
+space = "plane"
+motion = { model = "constant_velocity", noise = "discrete", sigma_a_mps2 = 1.0 }
+measurement = { model = "sensors" }
+start = { kind = "one_point", velocity_sigma_mps = 200.0 }
+)";
+
+TEST(Track, SeveralSensorsWriteOneLog) {
+  const TemporaryFolder folder;
+  folder.write("two.toml", kTwoSensors);
+  folder.write("log.csv",
+               "time_s,east_m,north_m,range_m,bearing_deg\n0,3000,4000,,\n1,,,5060,37\n2,3010,4200,,\n3,,,5270,35.5\n");
+  const Outcome outcome = run(folder, "track two.toml log.csv -o steps.csv");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out,
+              AllOf(HasSubstr("  by plots "), HasSubstr("  by radar "), HasSubstr("4 measurements, 0 missing")));
+  const StepLog steps = read_step_log(folder.path() / "steps.csv", "both");
+  EXPECT_EQ(steps.records.front().source, 0);
+  EXPECT_EQ(steps.records.back().source, 1);
+  folder.write("bad.csv", "time_s,east_m,north_m,range_m,bearing_deg\n0,3000,4000,5000,\n");
+  EXPECT_THAT(run(folder, "track two.toml bad.csv").err, HasSubstr("a row for each sensor"));
+}
+
+TEST(Track, LateRowsAreTakenWhereTheyBelong) {
+  const TemporaryFolder folder;
+  folder.write("line.toml", kLineStudy);
+  const std::string header = "time_s,position_m\n";
+  folder.write("sorted.csv", header + row(1) + row(2) + row(3) + row(4) + row(5) + row(6));
+  folder.write("late.csv", header + row(1) + row(2) + row(4) + row(5) + row(3) + row(6));
+  EXPECT_THAT(run(folder, "track line.toml late.csv").err, HasSubstr("--sort-window"));
+  const Outcome sorted = run(folder, "track line.toml sorted.csv -o sorted_steps.csv"),
+                late = run(folder, "track line.toml late.csv --late 3 -o late_steps.csv");
+  EXPECT_EQ(late.status, 0) << late.err;
+  EXPECT_THAT(late.err, HasSubstr("1 late rows put where they belong, 2 steps run again for them, 0 rows too late"));
+  const auto last_line = [&](const std::string& name) {
+    const std::string text = folder.read(name);
+    return text.substr(text.rfind('\n', text.size() - 2) + 1);
+  };
+  EXPECT_THAT(folder.read("late_steps.csv"), HasSubstr(",revised,"));
+  EXPECT_EQ(replaced(last_line("late_steps.csv"), "6,plain,0,ok,0,", "6,plain,0,ok,"), last_line("sorted_steps.csv"));
+  const Outcome too_late = run(folder, "track line.toml late.csv --late 1");
+  EXPECT_THAT(too_late.err,
+              HasSubstr("0 late rows put where they belong, 0 steps run again for them, 1 rows too late"));
+}
+
 }  // namespace
 }  // namespace truebearing::track_test

@@ -6,7 +6,7 @@
 
 namespace truebearing {
 
-/// Calls body(std::integral_constant<int, count>) for a count of 1 to 9, as fixed sizes and unrolled loops want it,
+/// Calls body(std::integral_constant<int, count>) for a count of 1 to 10, as fixed sizes and unrolled loops want it,
 /// and for any other with 0, which stands for a count that is not known beforehand.
 template <typename Body>
 [[gnu::always_inline]] inline void with_count(int count, const Body& body) {
@@ -29,6 +29,8 @@ template <typename Body>
       return body(std::integral_constant<int, 8>{});
     case 9:
       return body(std::integral_constant<int, 9>{});
+    case 10:
+      return body(std::integral_constant<int, 10>{});
     default:
       return body(std::integral_constant<int, 0>{});
   }

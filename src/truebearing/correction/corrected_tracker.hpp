@@ -29,6 +29,13 @@ class CorrectedTracker final : public Tracker {
     correction_.reset();
   }
 
+  bool assign(const Tracker& other) override {
+    const auto* corrected = dynamic_cast<const CorrectedTracker*>(&other);
+    if (!corrected || !ensemble_.assign(corrected->ensemble_).empty()) return false;
+    correction_ = corrected->correction_;
+    return true;
+  }
+
   std::unique_ptr<Tracker> fresh() const override {
     return std::make_unique<CorrectedTracker>(ensemble_.fresh(), model_, bounds_);
   }

@@ -23,6 +23,7 @@ void begin_record(const StepRecord& step, const StepRecord& reference, StepRecor
   corrected.status = step.status;
   corrected.space = step.space;
   corrected.sensor = step.sensor;
+  corrected.source = step.source;
   corrected.x = reference.x;
   corrected.P = reference.P;
   corrected.correction.emplace(Unfilled());

@@ -58,6 +58,7 @@ int mirror_parity(const FeatureSpec& feature, Frame frame, const StateSpace& spa
 std::string describe(const FeatureSpec& feature) {
   return fmt::format(fmt::runtime(entry(feature.kind).words), fmt::arg("component", feature.component),
                      fmt::arg("alpha", feature.alpha), fmt::arg("mode", feature.mode),
+                     fmt::arg("sensor", feature.sensor),
                      fmt::arg("of", feature.companion.empty() ? "" : " of " + feature.companion),
                      fmt::arg("in", feature.component.empty() ? "" : " in " + feature.component));
 }

@@ -25,6 +25,7 @@ struct FeatureSpec {
   double scale = 1.0;           ///< divisor, in the units of the component, > 0
   bool scale_is_sigma = false;  ///< divide by the base's standard deviation of the component instead
   int mode = 0;                 ///< counted from 1
+  int sensor = 0;               ///< counted from 1, in the order of their names
 
   bool operator==(const FeatureSpec&) const = default;
 };

@@ -35,6 +35,8 @@ void check(const FeatureSpec& feature, const StateSpace& space, const StateSpace
     throw InputError(where, "has no meaning in the space " + space.name, "the space plane");
   if (needs.mode && (feature.mode < 1 || feature.mode > kMaxModes))
     throw InputError(where, fmt::format("mode is {}", feature.mode), fmt::format("1 to {}", kMaxModes));
+  if (needs.sensor && feature.sensor < 1)
+    throw InputError(where, fmt::format("sensor is {}", feature.sensor), "its place among the sensors' names, from 1");
   if (needs.companion == FeatureNeeds::Companion::required && feature.companion.empty())
     throw InputError(where, "names no companion");
   if (needs.alpha && !(feature.alpha > 0.0 && feature.alpha <= 1.0))
@@ -98,7 +100,8 @@ FeatureExtractor::FeatureExtractor(std::vector<FeatureSpec> features, const Stat
     }
     wants_sigma_ |= feature.scale_is_sigma || feature.kind == FeatureKind::log_sigma;
     terms_.push_back({feature.kind, std::max(components.component_index(feature.component), 0), companion,
-                      feature.alpha, feature.offset, feature.scale, feature.scale_is_sigma, feature.mode - 1});
+                      feature.alpha, feature.offset, feature.scale, feature.scale_is_sigma, feature.mode - 1,
+                      feature.sensor - 1});
   }
 }
 
@@ -205,6 +208,7 @@ void FeatureExtractor::remember(Term& term, const StepRecord& record) const {
     case FeatureKind::own_velocity:
     case FeatureKind::neighbour_closeness:
     case FeatureKind::neighbour_difference:
+    case FeatureKind::sensor:
       break;
   }
 }
@@ -282,6 +286,8 @@ double FeatureExtractor::value(const Term& term, const StepRecord& base, const S
       return base.neighbour ? base.neighbour->closeness : 0.0;
     case FeatureKind::neighbour_difference:
       return base.neighbour ? base.neighbour->closeness * scaled(in_frame(base.neighbour->difference)) : 0.0;
+    case FeatureKind::sensor:
+      return base.source == term.sensor ? 1.0 : 0.0;
     case FeatureKind::log_interval: {
       const bool uses = base.status == StepStatus::ok && base.innovation;
       const double last_s = term.used > (uses ? 1.0 : 0.0) ? term.memory[uses ? 1 : 0] : began_s_;

@@ -50,6 +50,7 @@ class FeatureExtractor {
     double alpha, offset, scale;
     bool scale_is_sigma;
     int mode;
+    int sensor;
     // What only a used measurement gives, or an average of it: a number, or a vector in the state's own frame.
     BoundedVector memory = BoundedVector::Zero(1);
     double used = 0.0;  // steps in which the measurement was used

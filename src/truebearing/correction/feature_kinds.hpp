@@ -39,6 +39,7 @@ enum class FeatureKind {
   neighbour_closeness,   ///< how near the nearest other target is, in (0, 1]; 0 where the tracker follows no other
   neighbour_difference,  ///< closeness (x_neighbour[component] - x[component]) / scale; 0 where there is no other
   log_interval,          ///< ln of the time from the last used measurement before this step to this step, at least 1 ms
+  sensor,                ///< 1 where that one of several sensors took the step's measurement, else 0
   frame_turn  ///< the angle by which the velocity has turned since the last used measurement, to starboard, rad; plane
               ///< space
 };
@@ -56,6 +57,7 @@ struct FeatureNeeds {
   bool offset = false;
   bool scale = false;
   bool mode = false;
+  bool sensor = false;
   bool plane = false;   ///< has a meaning in the plane space only
   RecordBlocks blocks;  ///< of the companion's records where one is named, else of the base's
 };
@@ -78,8 +80,9 @@ enum class FeatureMirror {
 
 struct FeatureRow {
   FeatureKind kind;
-  const char* name;   ///< as studies and model files spell it
-  const char* words;  ///< for tables and sentences: {component}, {alpha}, {mode}, {of} a companion, {in} a component
+  const char* name;  ///< as studies and model files spell it
+  const char*
+      words;  ///< for tables and sentences: {component}, {alpha}, {mode}, {sensor}, {of} a companion, {in} a component
   FeatureMirror mirror;
   FeatureNeeds needs;
 };
@@ -211,6 +214,8 @@ inline constexpr std::array kFeatureRows{
                FeatureMirror::by_component,
                {.component = kComponent, .scale = true, .blocks = kNeighbour}},
     FeatureRow{FeatureKind::log_interval, "log_interval", "ln interval", FeatureMirror::even, {.blocks = kInnovation}},
+    FeatureRow{
+        FeatureKind::sensor, "sensor", "sensor {sensor}", FeatureMirror::even, {.sensor = true, .blocks = kNothing}},
     FeatureRow{FeatureKind::frame_turn,
                "frame_turn",
                "turn of the velocity",

@@ -57,6 +57,12 @@ FeatureSpec read_feature(JsonObject object) {
       throw object.error("mode", fmt::format("is {}", mode), fmt::format("1 to {}", kMaxModes));
     feature.mode = static_cast<int>(mode);
   }
+  if (needs.sensor) {
+    const double sensor = object.number("sensor");
+    if (!(sensor >= 1.0 && sensor <= kMostSensors && sensor == std::floor(sensor)))
+      throw object.error("sensor", fmt::format("is {}", sensor), fmt::format("1 to {}", kMostSensors));
+    feature.sensor = static_cast<int>(sensor);
+  }
   object.finish();
   return feature;
 }
@@ -70,6 +76,7 @@ OrderedJson feature_json(const FeatureSpec& feature) {
   if (needs.offset) json["offset"] = feature.offset;
   if (needs.scale) json["scale"] = feature.scale_is_sigma ? OrderedJson(kSigma) : OrderedJson(feature.scale);
   if (needs.mode) json["mode"] = feature.mode;
+  if (needs.sensor) json["sensor"] = feature.sensor;
   return json;
 }
 

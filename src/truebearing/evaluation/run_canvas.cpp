@@ -52,11 +52,12 @@ void RunCanvas::add(const StepRecord& record, DrawnTrack& track) const {
 }
 
 void RunCanvas::add_measured(const Recording& recording, RunPicture& picture) const {
-  const int east = place_of(recording.measured, "east_m"), north = place_of(recording.measured, "north_m");
-  const int range = place_of(recording.measured, "range_m"), bearing = place_of(recording.measured, "bearing_deg");
-  const int value = place_of(recording.measured, component_);
-  const bool sights = plane_ && bearing >= 0 && range < 0;
   for (const Measurement& measurement : recording.measurements) {
+    const std::vector<std::string>& measured = components_of(recording, measurement);
+    const int east = place_of(measured, "east_m"), north = place_of(measured, "north_m");
+    const int range = place_of(measured, "range_m"), bearing = place_of(measured, "bearing_deg");
+    const int value = place_of(measured, component_);
+    const bool sights = plane_ && bearing >= 0 && range < 0;
     const SensorState sensor = measurement.sensor.value_or(SensorState{});
     const auto z = [&](int i) { return i < measurement.z.size() ? measurement.z(i) : kNaN; };
     BoundedVector at(2);

@@ -50,6 +50,13 @@ void TrackerSet::reset() {
   for (Entry& entry : entries_) entry.records = {};
 }
 
+std::string TrackerSet::assign(const TrackerSet& other) {
+  if (std::string name = ensemble_.assign(other.ensemble_); !name.empty()) return name;
+  corrections_ = other.corrections_;
+  for (Entry& entry : entries_) entry.records = {};
+  return {};
+}
+
 TrackerSet TrackerSet::fresh() const {
   TrackerSet copy(ensemble_.fresh());
   copy.corrections_ = corrections_;

@@ -36,6 +36,9 @@ class TrackerSet {
 
   void reset();
   TrackerSet fresh() const;
+  /// Becomes a copy of `other` as it stands, without the records of its last step, where that was made by fresh() from
+  /// this one or from the same. The name of a tracker that cannot be copied, and nothing is of use then; else empty.
+  std::string assign(const TrackerSet& other);
 
  private:
   struct Entry {

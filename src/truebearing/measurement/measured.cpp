@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "truebearing/measurement/measured.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <utility>
 
@@ -40,6 +41,15 @@ Measured Measured::snapshots(int sensors) {
   return {"snapshots", {"snapshots"}, sensors};
 }
 
+Measured Measured::several(std::vector<Source> sources) {
+  Measured measured{"sensors", {}, 0, std::move(sources)};
+  for (const Source& source : measured.sources)
+    for (const std::string& component : source.components)
+      if (std::find(measured.components.begin(), measured.components.end(), component) == measured.components.end())
+        measured.components.push_back(component);
+  return measured;
+}
+
 Measured Measured::step_log(const StateSpace& space) {
   return {"step_log", space.components};
 }
@@ -52,6 +62,12 @@ Measured Measured::of(std::vector<std::string> components) {
 }
 
 std::string describe(const Measured& measured) {
+  if (!measured.sources.empty()) {
+    std::vector<std::string> texts;
+    for (const Source& source : measured.sources)
+      texts.push_back(fmt::format("{}: {}", source.name, fmt::join(source.components, ", ")));
+    return fmt::format("{} ({})", measured.kind, fmt::join(texts, "; "));
+  }
   return fmt::format("{} ({})", measured.kind, fmt::join(measured.components, ", "));
 }
 

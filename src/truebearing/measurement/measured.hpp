@@ -11,12 +11,25 @@
 
 namespace truebearing {
 
+inline constexpr int kMostSensors = 64;  ///< that one tracker reads
+
+/// One of several sensors: its name, and the components of its z.
+struct Source {
+  std::string name;
+  std::vector<std::string> components;
+  bool operator==(const Source&) const = default;
+};
+
 struct Measured {
   std::string kind;                     ///< "position"; a sensor of another kind has a word of its own
-  std::vector<std::string> components;  ///< of z, as Recording::measured: "east_m", "bearing_deg"
+  std::vector<std::string> components;  ///< of z, as Recording::measured: "east_m", "bearing_deg"; of several sensors
+                                        ///< those of all, each once
   int sensors = 0;                      ///< of an array: that it has, or that are needed; 0 where nothing is said
+  std::vector<Source> sources{};        ///< of several sensors: Measurement::source is a place among them
 
-  bool operator==(const Measured& other) const { return kind == other.kind && components == other.components; }
+  bool operator==(const Measured& other) const {
+    return kind == other.kind && components == other.components && sources == other.sources;
+  }
   /// Its components are states then; what was measured beside them stands in the log alone.
   bool is_step_log() const { return kind == "step_log"; }
 
@@ -31,6 +44,8 @@ struct Measured {
   static Measured lorenz();
   /// The blocks of a line array, which have no z.
   static Measured snapshots(int sensors = 0);
+  /// Sensors that take turns.
+  static Measured several(std::vector<Source> sources);
   /// What a tracker that ran elsewhere made of its measurements: states of that space.
   static Measured step_log(const StateSpace& space);
   /// The kind above that has these components; "values" where none has.

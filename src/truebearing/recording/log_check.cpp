@@ -62,6 +62,10 @@ class LogSurvey {
     fault(error);
   }
 
+  static bool holds_numbers(const LogColumn& column) {
+    return column.role != ColumnRole::target && column.role != ColumnRole::source;
+  }
+
   void describe_columns() {
     for (std::size_t index = columns_.size(); index < csv_.header().size(); ++index)
       columns_.push_back({index, {}, {}});
@@ -70,7 +74,7 @@ class LogSurvey {
       one.name = csv_.header()[column.index];
       one.is_used = column.role != ColumnRole::left_out;
       one.taken_for = std::string(to_string(column.role));
-      const bool has_quantity = column.role != ColumnRole::time && column.role != ColumnRole::target;
+      const bool has_quantity = holds_numbers(column) && column.role != ColumnRole::time;
       if (one.is_used && has_quantity) one.taken_for += " " + column.quantity;
       const NameAndUnit name = apart(one.name);
       if (one.is_used && name.unit) one.unit = std::string(name.unit->suffix);
@@ -87,7 +91,7 @@ class LogSurvey {
     while (time_ && csv_.next()) {
       ++report_.rows;
       for (const LogColumn& column : columns_)
-        if (column.role != ColumnRole::left_out && column.role != ColumnRole::time && column.role != ColumnRole::target)
+        if (holds_numbers(column) && column.role != ColumnRole::left_out && column.role != ColumnRole::time)
           count_cell(column.index);
       TargetRows& rows = targets_[target_ ? std::string(csv_.word(*target_)) : std::string()];
       try {

@@ -36,6 +36,8 @@ std::string_view to_string(ColumnRole role) {
       return "standard deviation";
     case ColumnRole::sensor:
       return "own ship";
+    case ColumnRole::source:
+      return "which sensor measured";
     case ColumnRole::guess:
       return "guess";
     case ColumnRole::truth:

@@ -18,7 +18,7 @@
 
 namespace truebearing {
 
-enum class ColumnRole { left_out, time, measured, sigma, sensor, guess, truth, target, position, velocity };
+enum class ColumnRole { left_out, time, measured, sigma, sensor, source, guess, truth, target, position, velocity };
 
 /// "own ship", "standard deviation", ...
 std::string_view to_string(ColumnRole role);
@@ -41,6 +41,7 @@ struct LogLayout {
   std::vector<std::optional<LogColumn>> truth;  ///< by component of the truth space
   const StateSpace* truth_space = nullptr;
   std::optional<std::size_t> target;  ///< the column that tells targets apart
+  std::optional<std::size_t> source;  ///< the column that names which of several sensors a row is of
   std::vector<InputError> faults;     ///< why the file cannot be read; mostly empty
 
   std::vector<std::string> measured() const;

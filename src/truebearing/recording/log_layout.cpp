@@ -35,6 +35,7 @@ constexpr std::array kKnown{
     KnownColumn{"guess_speed", Dimension::speed, ColumnRole::guess, "guess_speed_mps"},
     KnownColumn{"guess_speed_sigma", Dimension::speed, ColumnRole::guess, "guess_speed_sigma_mps"}};
 
+constexpr std::string_view kSourceColumn = "sensor";
 constexpr std::string_view kTruthPrefix = "truth_", kSigmaEnd = "_sigma";
 
 const KnownColumn* find_known(const NameAndUnit& name) {
@@ -71,6 +72,8 @@ class LayoutReader {
         column = {index, ColumnRole::time, "time_s"};
       else if (index == layout_.target)
         column = {index, ColumnRole::target, "target"};
+      else if (!options.sources.empty() && csv.header()[index] == kSourceColumn)
+        column = source_column(index);
       else if (!is_unwanted(csv.header()[index], options))
         name_column(column);
       layout_.columns.push_back(std::move(column));
@@ -90,6 +93,11 @@ class LayoutReader {
   LogLayout layout() && { return std::move(layout_); }
 
  private:
+  LogColumn source_column(std::size_t index) {
+    layout_.source = index;
+    return {index, ColumnRole::source, std::string(kSourceColumn)};
+  }
+
   void fault(std::size_t index, const std::string& found, const std::string& valid) {
     layout_.faults.emplace_back(csv_.name() + ": " + shortened(csv_.header()[index], 40), found, valid);
   }

@@ -11,6 +11,7 @@
 
 #include "truebearing/core/bounded.hpp"
 #include "truebearing/core/state_space.hpp"
+#include "truebearing/measurement/measured.hpp"
 #include "truebearing/measurement/measurement.hpp"
 
 namespace truebearing {
@@ -32,6 +33,8 @@ struct Truth {
 struct Recording {
   /// Names of the components of z with units: "position_m"; of a line array "snapshots".
   std::vector<std::string> measured;
+  /// Of several sensors, by Measurement::source, whose z has the components of its own; empty where there is one.
+  std::vector<Source> sources{};
   std::vector<Measurement> measurements;
   std::vector<std::size_t> line;            ///< of the file that each was read from, from 1; empty where there is none
   const StateSpace* truth_space = nullptr;  ///< nullptr where there is no truth
@@ -51,6 +54,12 @@ struct Recording {
   std::shared_ptr<const StepLog> steps;  ///< owns what `recorded` of the measurements points to; mostly empty
 };
 
+/// What that measurement's z is made of.
+inline const std::vector<std::string>& components_of(const Recording& recording, const Measurement& measurement) {
+  if (recording.sources.empty()) return recording.measured;
+  return recording.sources[static_cast<std::size_t>(measurement.source)].components;
+}
+
 /// Whether z holds a bearing and the frequency heard with it, either of which may come alone.
 inline bool measures_bearing_and_frequency(const std::vector<std::string>& measured) {
   return measured.size() == 2 && measured[0] == "bearing_deg" && measured[1] == "frequency_hz";
@@ -65,7 +74,7 @@ inline bool measures_snapshots(const std::vector<std::string>& measured) {
 inline bool is_unusable(const Recording& recording, const Measurement& measurement) {
   if (measures_snapshots(recording.measured))
     return !measurement.snapshots || !measurement.snapshots->has_usable_snapshot();
-  if (!measures_bearing_and_frequency(recording.measured)) return measurement.is_missing();
+  if (!measures_bearing_and_frequency(components_of(recording, measurement))) return measurement.is_missing();
   return measurement.z.size() == 0 || measurement.z.array().isNaN().all();
 }
 

@@ -52,6 +52,16 @@ void write_vector(CsvWriter& csv, const BoundedVector& values, const std::vector
     csv.number(values.size() > 0 ? values(static_cast<Eigen::Index>(i)) / factors[i] : kNaN);
 }
 
+// `values` of the components of a measurement's own sensor, at their places among all that is measured.
+BoundedVector among_all(const Recording& recording, const Measurement& measurement, const BoundedVector& values) {
+  if (recording.sources.empty() || values.size() == 0) return values;
+  const std::vector<std::string>&own = components_of(recording, measurement), &all = recording.measured;
+  BoundedVector spread = BoundedVector::Constant(static_cast<Eigen::Index>(all.size()), kNaN);
+  for (Eigen::Index i = 0; i < values.size(); ++i)
+    spread[std::find(all.begin(), all.end(), own[static_cast<std::size_t>(i)]) - all.begin()] = values[i];
+  return spread;
+}
+
 }  // namespace
 
 std::string LogFindings::note() const {
@@ -71,6 +81,7 @@ MeasurementLog::MeasurementLog(CsvReader csv, RecordingOptions options)
       cell_of_(csv_.header().size()),
       target_(options_.target) {
   columns_and_counts_.measured = layout_.measured();
+  columns_and_counts_.sources = options_.sources;
   const auto is_latitude = [](const std::string& name) { return apart(name).stem == "latitude"; };
   if (std::any_of(measured().begin(), measured().end(), is_latitude))
     throw InputError(csv_.name(), "holds positions on the globe, which are no measurements",
@@ -81,13 +92,88 @@ MeasurementLog::MeasurementLog(CsvReader csv, RecordingOptions options)
                      "vessel, flight, track, mmsi, icao24, callsign");
   if (!(options_.sort_window_s >= 0.0)) throw InputError("sort window", "is negative or no number", "seconds >= 0");
   for (const LogColumn& column : layout_.columns) {
-    const bool is_number =
-        column.role != ColumnRole::left_out && column.role != ColumnRole::time && column.role != ColumnRole::target;
+    const bool is_number = column.role != ColumnRole::left_out && column.role != ColumnRole::time &&
+                           column.role != ColumnRole::target && column.role != ColumnRole::source;
     if (!is_number) continue;
     cell_of_[column.index] = columns_.size();
     columns_.push_back(column.index);
   }
   findings_.left_out = layout_.left_out(csv_);
+  if (!options_.sources.empty()) find_sources();
+}
+
+// Where each sensor's components stand among all that is measured; nowhere for one that the log has no columns of.
+void MeasurementLog::find_sources() {
+  const std::vector<std::string>& all = measured();
+  std::vector<std::string> known;
+  for (const Source& source : options_.sources) {
+    std::vector<Eigen::Index> places;
+    for (const std::string& component : source.components)
+      if (const auto at = std::find(all.begin(), all.end(), component); at != all.end())
+        places.push_back(at - all.begin());
+    if (places.size() != source.components.size()) places.clear();
+    if (!places.empty()) {
+      known.push_back(source.name);
+      if (const auto same = std::find(places_of_.begin(), places_of_.end(), places);
+          same != places_of_.end() && !layout_.source)
+        throw InputError(
+            csv_.name(),
+            fmt::format("does not tell {} and {} apart, which measure the same",
+                        options_.sources[static_cast<std::size_t>(same - places_of_.begin())].name, source.name),
+            "a column `sensor` with their names");
+    }
+    places_of_.push_back(std::move(places));
+  }
+  if (known.empty()) {
+    std::vector<std::string> wanted;
+    for (const Source& source : options_.sources)
+      wanted.push_back(fmt::format("{} of {}", fmt::join(source.components, ", "), source.name));
+    throw InputError(csv_.name(), fmt::format("measures {}", fmt::join(all, ", ")),
+                     fmt::format("{}", fmt::join(wanted, "; ")));
+  }
+}
+
+// By its name, else the one whose components are those that the row fills. A row that fills nothing is of the first, and
+// missing.
+std::size_t MeasurementLog::source_of_row(const Measurement& measurement) const {
+  if (layout_.source) {
+    const std::string name(csv_.text(*layout_.source));
+    for (std::size_t i = 0; i < options_.sources.size(); ++i)
+      if (options_.sources[i].name == name && !places_of_[i].empty()) return i;
+    std::vector<std::string> names;
+    for (const Source& source : options_.sources) names.push_back(source.name);
+    throw csv_.error(*layout_.source, "is " + as_shown(name), fmt::format("one of {}", fmt::join(names, ", ")));
+  }
+  const auto filled = measurement.z.array().isFinite().count();
+  if (filled == 0) return 0;
+  std::optional<std::size_t> best;  // the one that the row fills most of, with nothing left over
+  Eigen::Index most = 0;
+  for (std::size_t i = 0; i < places_of_.size(); ++i) {
+    Eigen::Index own = 0;
+    for (const Eigen::Index place : places_of_[i]) own += std::isfinite(measurement.z[place]) ? 1 : 0;
+    const bool fits_better = own == filled && (!best || (places_of_[i].size() < places_of_[*best].size()));
+    if (!fits_better) continue;
+    best = i;
+    most = own;
+  }
+  if (!best || most == 0)
+    throw csv_.error(layout_.z.front().index, "stands beside what another sensor measures", "a row for each sensor");
+  return *best;
+}
+
+// Of all that is measured what the row's own sensor does.
+void MeasurementLog::keep_own(Measurement& measurement) const {
+  const std::size_t source = source_of_row(measurement);
+  const std::vector<Eigen::Index>& places = places_of_[source];
+  measurement.source = static_cast<int>(source);
+  const BoundedVector z = measurement.z, sigma = measurement.sigma;
+  measurement.z = BoundedVector::Constant(static_cast<Eigen::Index>(options_.sources[source].components.size()), kNaN);
+  if (sigma.size() > 0) measurement.sigma = measurement.z;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    measurement.z[static_cast<Eigen::Index>(i)] = z[places[i]];
+    if (sigma.size() > 0) measurement.sigma[static_cast<Eigen::Index>(i)] = sigma[places[i]];
+  }
+  if (!measurement.sigma.allFinite()) measurement.sigma.resize(0);  // the sensor's own then
 }
 
 // Rows without a name are of the target that is read, unless a certain one is wanted.
@@ -114,6 +200,7 @@ void MeasurementLog::check_lateness(double time_s) {
     latest_time_s_ = time_s;
     return;
   }
+  if (options_.late_keep_s > 0.0) return;  // whoever puts it in order counts it
   if (time_s < latest_time_s_ - options_.sort_window_s)
     throw csv_.error(
         time_.index(), fmt::format("is {}, earlier than {} in a row before", time_s, latest_time_s_),
@@ -154,8 +241,9 @@ Measurement MeasurementLog::read_measurement(const std::vector<double>& cells, d
       throw csv_.error(layout_.sigma[i].index, "is " + as_shown(csv_.word(layout_.sigma[i].index)), "a number > 0");
     measurement.sigma(static_cast<Eigen::Index>(i)) = sigma;
     // A measurement of unknown or infinite spread says nothing.
-    if (std::isnan(sigma)) measurement.z(static_cast<Eigen::Index>(i)) = kNaN;
+    if (std::isnan(sigma) && options_.sources.empty()) measurement.z(static_cast<Eigen::Index>(i)) = kNaN;
   }
+  if (!options_.sources.empty()) keep_own(measurement);
   // A row without a guess has empty cells there.
   if (!layout_.guess.empty() && !std::isnan(number(layout_.guess[0]))) {
     for (const LogColumn& column : layout_.guess)
@@ -245,6 +333,7 @@ void MeasurementLog::append_to(Recording& recording) const {
 
 void MeasurementLog::complete(Recording& recording) const {
   recording.measured = measured();
+  recording.sources = options_.sources;
   recording.truth_space = truth_space();
   recording.counts = counts();
   if (!truth_space()) return;
@@ -256,7 +345,10 @@ void MeasurementLog::complete(Recording& recording) const {
 }
 
 Recording read_recording(CsvReader csv, const RecordingOptions& options, LogFindings* findings) {
-  MeasurementLog log(std::move(csv), options);
+  RecordingOptions sorted = options;
+  sorted.sort_window_s = std::max(options.sort_window_s, options.late_keep_s);
+  sorted.late_keep_s = 0.0;
+  MeasurementLog log(std::move(csv), sorted);
   Recording recording;
   while (log.next()) log.append_to(recording);
   log.complete(recording);
@@ -289,6 +381,7 @@ std::string write_recording(const Recording& recording) {
   const std::vector<double> x_factors = has_truth ? file_factors(recording.truth_space->components) : z_factors;
 
   std::vector<std::string> header{"time_s"};
+  if (!recording.sources.empty()) header.emplace_back("sensor");
   header.insert(header.end(), recording.measured.begin(), recording.measured.end());
   if (has_sigma)
     for (const std::string& name : recording.measured) header.push_back(sigma_name(name));
@@ -301,8 +394,9 @@ std::string write_recording(const Recording& recording) {
   for (std::size_t k = 0; k < recording.measurements.size(); ++k) {
     const Measurement& measurement = recording.measurements[k];
     csv.number(measurement.time_s);
-    write_vector(csv, measurement.z, z_factors);
-    if (has_sigma) write_vector(csv, measurement.sigma, z_factors);
+    if (!recording.sources.empty()) csv.text(recording.sources[static_cast<std::size_t>(measurement.source)].name);
+    write_vector(csv, among_all(recording, measurement, measurement.z), z_factors);
+    if (has_sigma) write_vector(csv, among_all(recording, measurement, measurement.sigma), z_factors);
     if (has_sensor) {
       const Eigen::Vector2d unknown = Eigen::Vector2d::Constant(kNaN);
       const SensorState sensor = measurement.sensor.value_or(SensorState{unknown, unknown});

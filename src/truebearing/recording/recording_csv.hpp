@@ -3,8 +3,9 @@
 // `range_km`, `bearing_deg`; log_units.hpp), and optionally their standard deviations (`position_sigma_m`), own-ship
 // columns (`sensor_east_m`, `sensor_north_m`, and `sensor_east_mps`, `sensor_north_mps`), a guess of what is tracked
 // (`guess_range_m`, `guess_range_sigma_m`, and `guess_speed_mps`, `guess_speed_sigma_mps`), the truth
-// (`truth_<component>`), and a column that tells targets apart (`vessel`, `track`, `mmsi`, ...). Other columns are left
-// out (log_columns.hpp).
+// (`truth_<component>`), and a column that tells targets apart (`vessel`, `track`, `mmsi`, ...). Of several sensors that a
+// study knows each row is one's: a column `sensor` names it, or the cells that are filled tell. Other columns are left out
+// (log_columns.hpp).
 //
 // A cell without a finite number makes the measurement missing, and so does what cannot be: a range below 0, a frequency
 // that is not above 0, a bearing of 511 degrees in a log that has no others beyond 360, by which AIS says that there is
@@ -90,6 +91,9 @@ class MeasurementLog {
   void check_lateness(double time_s);
   Measurement read_measurement(const std::vector<double>& cells, double time_s);
   void remove_impossible(Measurement& measurement);
+  void find_sources();
+  std::size_t source_of_row(const Measurement& measurement) const;
+  void keep_own(Measurement& measurement) const;
   void check_end() const;
 
   CsvReader csv_;
@@ -99,6 +103,8 @@ class MeasurementLog {
   Recording columns_and_counts_;      // without measurements
   std::vector<std::size_t> columns_;  // those that are read
   std::vector<std::size_t> cell_of_;  // by column of the file: its place among them
+  std::vector<std::vector<Eigen::Index>>
+      places_of_;  // of several sensors: of its components among all that is measured
   std::priority_queue<Row, std::vector<Row>, std::greater<>> waiting_;
   Row row_;
   double first_time_s_ = 0.0;

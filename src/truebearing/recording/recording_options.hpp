@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "truebearing/measurement/measured.hpp"
+
 namespace truebearing {
 
 struct RecordingOptions {
@@ -14,10 +16,15 @@ struct RecordingOptions {
   /// What is to be measured, in this order: {"range_m", "bearing_deg"}; whatever the log measures where it is empty, or
   /// where the log has none of it.
   std::vector<std::string> measured{};
+  /// Of several sensors: a row is one's, by the name in a column `sensor`, else by the cells that are filled.
+  std::vector<Source> sources{};
   /// The target whose rows are read, where the file has several.
   std::string target{};
   /// Rows that come later than others of a later time are put in order where they are no more than this late.
   double sort_window_s = 0.0;
+  /// In place of that, of who puts late rows where they belong (evaluation/late_rows.hpp): rows are given as they come.
+  /// Who wants a whole recording has it sorted.
+  double late_keep_s = 0.0;
 };
 
 }  // namespace truebearing

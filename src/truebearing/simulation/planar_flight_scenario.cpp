@@ -49,7 +49,15 @@ Eigen::Vector2d range_truth(const Eigen::Vector2d& recorded_m, const Eigen::Vect
 }  // namespace
 
 const StateSpace& PlanarFlightScenario::truth_space() const {
-  return parameters_.sensor.is_range() ? line_space() : plane_space();
+  return parameters_.sources.empty() && parameters_.sensor.is_range() ? line_space() : plane_space();
+}
+
+std::optional<Measured> PlanarFlightScenario::measured() const {
+  if (parameters_.sources.empty()) return parameters_.sensor.measured();
+  std::vector<Source> sources;
+  for (const PlanarSource& source : parameters_.sources)
+    sources.push_back({source.name, source.sensor.measured().components});
+  return Measured::several(std::move(sources));
 }
 
 // A recorder keeps its own time, once per period from a while before the first look to a while after the last; in between
@@ -71,6 +79,7 @@ PlanarFlightScenario::SeenFlight PlanarFlightScenario::fly(const std::vector<Loo
     if (!parameters_.jitter || std::abs(time_s - nearest_s) > kRounding * period_s) times_s.push_back(time_s);
   }
   std::sort(times_s.begin(), times_s.end());
+  times_s.erase(std::unique(times_s.begin(), times_s.end()), times_s.end());  // of sensors that look at once
   times_s.push_back(times_s.back() + period_s);  // what is drawn after a flight comes after its last look's period
   const FlownTrack track = parameters_.flight.fly(times_s, scenario);
   const auto column = [&](double time_s) {  // of the time nearest to it
@@ -104,7 +113,19 @@ PlanarFlightScenario::SeenFlight PlanarFlightScenario::fly(const std::vector<Loo
   return seen;
 }
 
+Recording PlanarFlightScenario::begin_recording() const {
+  const Measured all = *measured();
+  Recording recording;
+  recording.measured = all.components;
+  recording.sources = all.sources;
+  recording.truth_space = &truth_space();
+  recording.truth.resize(1);
+  if (parameters_.quiet_after_s) recording.phases = {"manoeuvre", "quiet"};
+  return recording;
+}
+
 Recording PlanarFlightScenario::simulate(const RunKey& key) const {
+  if (!parameters_.sources.empty()) return simulate_several(key);
   RandomStream scenario(key, StreamId::scenario);
   RandomStream process(key, StreamId::process);
   RandomStream measurement(key, StreamId::measurement);
@@ -119,11 +140,7 @@ Recording PlanarFlightScenario::simulate(const RunKey& key) const {
   flown.topRows<2>().colwise() -= site_m;
   recorded.colwise() -= site_m;
 
-  Recording recording;
-  recording.measured = parameters_.sensor.measured().components;
-  recording.truth_space = &truth_space();
-  recording.truth.resize(1);
-  if (parameters_.quiet_after_s) recording.phases = {"manoeuvre", "quiet"};
+  Recording recording = begin_recording();
   for (std::size_t k = 0; k < static_cast<std::size_t>(flown.cols()); ++k) {
     const auto column = static_cast<Eigen::Index>(k);
     Eigen::Vector4d state;
@@ -145,7 +162,74 @@ Recording PlanarFlightScenario::simulate(const RunKey& key) const {
   return recording;
 }
 
+// Looks of all sensors in the order of their times; of one time, of their names.
+Recording PlanarFlightScenario::simulate_several(const RunKey& key) const {
+  RandomStream scenario(key, StreamId::scenario);
+  RandomStream process(key, StreamId::process);
+  RandomStream measurement(key, StreamId::measurement);
+  RandomStream schedule(key, StreamId::schedule);
+
+  std::vector<std::pair<double, std::size_t>> times;  // and whose look it is
+  std::vector<double> sigma_m;
+  const double end_s = parameters_.period_s * parameters_.steps;
+  for (std::size_t i = 0; i < parameters_.sources.size(); ++i) {
+    const PlanarSource& source = parameters_.sources[i];
+    sigma_m.push_back(source.sensor.sigma_m.draw(scenario));
+    const double last = std::floor((end_s - source.first_s) / source.period_s + 1e-9);
+    for (double k = 0.0; k <= last; k += 1.0)
+      if (source.missed == 0.0 || schedule.uniform() >= source.missed)
+        times.emplace_back(source.first_s + k * source.period_s, i);
+  }
+  std::sort(times.begin(), times.end());
+  if (times.empty()) times.emplace_back(parameters_.sources.front().first_s, 0);
+  std::vector<Look> looks;
+  for (const auto& [time_s, source] : times) looks.push_back({time_s, true});
+
+  const SeenFlight seen = fly(looks, scenario, process);
+  const Eigen::Vector2d site_m = std::visit(PlaceSite{seen.flown, scenario}, parameters_.site);
+  Recording recording = begin_recording();
+  for (Eigen::Index k = 0; k < seen.flown.cols(); ++k) {
+    const auto& [time_s, place] = times[static_cast<std::size_t>(k)];
+    const PlanarSource& source = parameters_.sources[place];
+    Eigen::Vector4d state;
+    state << seen.recorded_m.col(k) - site_m, seen.flown.col(k).tail<2>();
+    Eigen::Vector4d from_sensor = state;
+    from_sensor.head<2>() -= source.site_m;
+    Measurement taken = source.sensor.measure(time_s, from_sensor, sigma_m[place], measurement);
+    taken.source = static_cast<int>(place);
+    if (source.bias.size() > 0) taken.z += source.bias;
+    if (const int bearing = source.sensor.output->bearing; bearing >= 0) taken.z[bearing] = wrap_pi(taken.z[bearing]);
+    recording.measurements.push_back(std::move(taken));
+    recording.truth[0].x.push_back(state);
+    if (parameters_.quiet_after_s)
+      recording.truth[0].phase.push_back(seen.since_manoeuvre_s[k] > *parameters_.quiet_after_s ? 1 : 0);
+  }
+  return recording;
+}
+
 namespace {
+
+PlanarSource read_source(const std::string& name, TableReader table) {
+  constexpr Range kPeriod{1e-3, 3600.0};
+  PlanarSource source;
+  source.name = name;
+  std::vector<std::string> outputs = planar_outputs();
+  std::erase(outputs, "range");  // of a space of its own
+  const std::string output = table.choice("output", outputs);
+  source.period_s = table.number("period_s", kPeriod);
+  source.first_s = table.number_or("first_s", source.period_s, kNonNegative);
+  source.missed = table.number_or("missed", 0.0, {0.0, 1.0});
+  if (table.has("site_m")) source.site_m = Eigen::Map<const Eigen::Vector2d>(table.numbers("site_m", 2).data());
+  const std::vector<std::string> components = planar_output(output).measured.components;
+  if (table.has("bias")) {
+    const std::vector<double> bias = table.numbers("bias", static_cast<int>(components.size()));
+    source.bias.resize(static_cast<Eigen::Index>(bias.size()));
+    for (std::size_t i = 0; i < bias.size(); ++i)
+      source.bias[static_cast<Eigen::Index>(i)] = components[i].ends_with("_deg") ? radians(bias[i]) : bias[i];
+  }
+  source.sensor = read_planar_sensor(std::move(table), output);
+  return source;
+}
 
 PlanarFlight read_flight(TableReader flight) {
   // Shorter than this, a leg or a turn is none, and the programme of a flight would not end.
@@ -217,15 +301,24 @@ RecorderJitter read_jitter(TableReader jitter) {
 
 std::unique_ptr<Scenario> read_planar_flight_scenario(TableReader& table) {
   PlanarFlightParameters parameters;
-  const std::string output = table.choice("output", planar_outputs());
+  std::optional<TableReader> sources = table.table_if_present("sensors");
+  const std::string output = sources ? "plane" : table.choice("output", planar_outputs());
   parameters.period_s = table.number("period_s", {0.0, 3600.0, true});
   parameters.steps = static_cast<int>(table.integer("steps", 1, 100'000));
   if (table.has("quiet_after_s")) parameters.quiet_after_s = table.number("quiet_after_s", kNonNegative);
   parameters.flight = read_flight(table.table("flight"));
   parameters.site = read_site(table.table_if_present("site"), parameters.steps);
   if (std::optional<TableReader> jitter = table.table_if_present("jitter")) parameters.jitter = read_jitter(*jitter);
-  parameters.sensor = read_planar_sensor(table.table("sensor"), output);
-  parameters.looks = read_look_schedule(table);
+  if (sources) {
+    std::vector<std::string> names = sources->keys();
+    std::sort(names.begin(), names.end());
+    for (const std::string& name : names) parameters.sources.push_back(read_source(name, sources->table(name)));
+    sources->finish();
+    if (names.empty()) throw table.error("sensors", "names none", "tables [scenario.sensors.NAME]");
+  } else {
+    parameters.sensor = read_planar_sensor(table.table("sensor"), output);
+    parameters.looks = read_look_schedule(table);
+  }
   return std::make_unique<PlanarFlightScenario>(std::move(parameters));
 }
 

@@ -6,12 +6,15 @@
 // range and a uniform bearing from the target's place at step at_step; [site] start_east_m and start_north_m put it where
 // the flight begins so far East and North of it. Without [site] it is where the flight begins.
 //
+// In place of output, [sensor] and [looks], tables [sensors.NAME] are several sensors that look each in its own time.
+//
 // With [jitter] the true and the measured position are those that a recorder would have kept, since recorded tracks are
 // scored against recorded positions. The true velocity, and with it the range rate, is that of the flight itself.
 #pragma once
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -37,6 +40,17 @@ struct SiteFromStart {
   Distribution east_m = 0.0, north_m = 0.0;  ///< of the flight's beginning, as seen from the site
 };
 struct SiteAtStart {};
+/// One of several sensors.
+struct PlanarSource {
+  std::string name;
+  PlanarSensor sensor;
+  double period_s = 1.0;  ///< it looks at first_s, first_s + period_s, ...
+  double first_s = 1.0;
+  double missed = 0.0;                               ///< probability that a look sees nothing, and leaves no row
+  Eigen::Vector2d site_m = Eigen::Vector2d::Zero();  ///< East and North of the scenario's site
+  BoundedVector bias;                                ///< what it measures too much, in the units of z; or empty
+};
+
 using Site = std::variant<SiteAtStart, SiteBesideTrack, SiteAtRange, SiteFromStart>;
 
 struct PlanarFlightParameters {
@@ -47,6 +61,7 @@ struct PlanarFlightParameters {
   std::optional<RecorderJitter> jitter;  ///< [jitter]
   PlanarSensor sensor;                   ///< [sensor]
   LookSchedule looks;                    ///< [looks]
+  std::vector<PlanarSource> sources;     ///< [sensors.NAME], by name; empty where there is one
   /// Where given, steps are told apart for the report: "quiet" longer than this after a manoeuvre, else "manoeuvre".
   std::optional<double> quiet_after_s;
 };
@@ -56,7 +71,7 @@ class PlanarFlightScenario final : public Scenario {
   explicit PlanarFlightScenario(PlanarFlightParameters parameters) : parameters_(std::move(parameters)) {}
   Recording simulate(const RunKey& key) const override;
   const StateSpace& truth_space() const override;
-  std::optional<Measured> measured() const override { return parameters_.sensor.measured(); }
+  std::optional<Measured> measured() const override;
   bool reports_sigma() const override { return parameters_.sensor.reported; }
   const PlanarFlightParameters& parameters() const { return parameters_; }
 
@@ -68,6 +83,8 @@ class PlanarFlightScenario final : public Scenario {
     Eigen::VectorXd since_manoeuvre_s;
   };
   SeenFlight fly(const std::vector<Look>& looks, RandomStream& scenario, RandomStream& process) const;
+  Recording begin_recording() const;
+  Recording simulate_several(const RunKey& key) const;
 
   PlanarFlightParameters parameters_;
 };

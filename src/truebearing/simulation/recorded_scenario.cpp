@@ -49,6 +49,7 @@ double exact(const std::string& name, const StateSpace& space, const BoundedVect
 }  // namespace
 
 std::string reason_to_replay(const Recording& recorded) {
+  if (!recorded.sources.empty()) return "has several sensors";
   if (const std::string name = unknown_column(recorded); !name.empty())
     return "measures " + name + ", which does not follow from its truth";
   return lacks_sigma(recorded) ? "carries no sigma for its measurements" : "";
@@ -66,6 +67,8 @@ RecordedScenario::RecordedScenario(Recording recorded, std::optional<double> sig
     *this = replayed(std::move(recorded));
     return;
   }
+  if (!recorded.sources.empty())
+    throw InputError("recording", "has several sensors, which are not measured afresh", "its own measurements");
   if (!recorded.truth_space || recorded.truth.size() != 1)
     throw InputError("recording", "has no truth to measure", "a log with truth_ columns");
   if (const std::string name = unknown_column(recorded); !name.empty())

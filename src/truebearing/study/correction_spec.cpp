@@ -25,6 +25,7 @@ FeatureSpec read_feature(TableReader& table) {
   else if (needs.scale)
     feature.scale = table.number("scale", kPositive);
   if (needs.mode) feature.mode = static_cast<int>(table.integer("mode", 1, kMaxModes));
+  if (needs.sensor) feature.sensor = static_cast<int>(table.integer("sensor", 1, kMostSensors));
   table.finish();
   return feature;
 }

@@ -51,7 +51,8 @@ Start read_start(TableReader& tracker, const MeasurementChoice& measurement, int
     start = HandOverStart{read_rest(table, states, measurement.leading())};
   } else if (kind == "one_point") {
     const double velocity_sigma_mps = table.number("velocity_sigma_mps", kPositive);
-    start = OnePointStart{velocity_sigma_mps, read_rest(table, states, measurement.leading())};
+    const double position_sigma_m = table.has("position_sigma_m") ? table.number("position_sigma_m", kPositive) : 0.0;
+    start = OnePointStart{velocity_sigma_mps, read_rest(table, states, measurement.leading()), position_sigma_m};
   } else {
     start = TwoPointStart{read_rest(table, states, measurement.leading())};
   }
@@ -61,6 +62,9 @@ Start read_start(TableReader& tracker, const MeasurementChoice& measurement, int
 
 FilterTrackerOptions read_options(TableReader& tracker, const MeasurementChoice& measurement) {
   FilterTrackerOptions options;
+  options.gate_nis_of = measurement.gate_nis_of;
+  if (measurement.model == "sensors" && tracker.has("gate_probability"))
+    throw tracker.error("gate_probability", "stands beside sensors of several sizes", "one in each [sensors.NAME]");
   if (tracker.has("gate_probability"))
     options.gate_nis =
         chi_square_quantile(tracker.number("gate_probability", {0.5, 1.0 - 1e-12}), measurement.sensor->size());

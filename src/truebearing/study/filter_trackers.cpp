@@ -28,7 +28,7 @@ void check_filter(const TableReader& tracker, const std::string& key, FilterKind
   if (filter == FilterKind::modified_gain && !bearings)
     throw tracker.error(key, "is \"modified_gain\", which \"" + measurement.model + "\" has none of",
                         "measurement.model = \"bearing\" or \"bearing_frequency\"");
-  if (filter == FilterKind::log_polar && (!bearings || measurement.has_frequency))
+  if (filter == FilterKind::log_polar && (measurement.model != "bearing" || measurement.has_frequency))
     throw tracker.error(key, "is \"log_polar\", whose coordinates \"" + measurement.model + "\" does not suit",
                         "measurement.model = \"bearing\"");
 }

@@ -40,6 +40,8 @@ std::unique_ptr<Tracker> make_particle_limit(TableReader& table, const Scenario&
     throw table.error("kind", "is \"particle_limit\", which knows no family but that of planar flights",
                       "a scenario of kind \"planar_flight\"");
   const PlanarFlightParameters& family = flights->parameters();
+  if (!family.sources.empty())
+    throw table.error("kind", "is \"particle_limit\", which knows one sensor", "a scenario with one [scenario.sensor]");
   if (family.flight.intervals)
     throw table.error("kind", "is \"particle_limit\", which does not know flights of intervals",
                       "a scenario whose flights are legs and manoeuvres");

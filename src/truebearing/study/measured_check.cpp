@@ -42,6 +42,7 @@ void check_measured(const Study& study, const Measured& given, const std::string
 
 void check_measured(const std::vector<std::string>& columns, const Scenario& scenario, const std::string& where) {
   const std::optional<Measured> wanted = scenario.measured();
+  if (wanted && !wanted->sources.empty()) return;  // of which a log may lack some: its reader says where it lacks all
   if (wanted && !wanted->is_step_log() && columns != wanted->components)
     throw InputError(where, fmt::format("measures {}", fmt::join(columns, ", ")),
                      fmt::format("{}, which the study's trackers take", fmt::join(wanted->components, ", ")));

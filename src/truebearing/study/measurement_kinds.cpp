@@ -1,24 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "truebearing/study/measurement_kinds.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <fmt/format.h>
+#include <optional>
 #include <toml++/toml.h>
 #include <vector>
 
 #include "truebearing/core/angle.hpp"
+#include "truebearing/core/chi_square.hpp"
+#include "truebearing/core/constants.hpp"
+#include "truebearing/core/suggestion.hpp"
 #include "truebearing/simulation/lorenz_scenario.hpp"
 #include "truebearing/tracker/bearing_sensor.hpp"
+#include "truebearing/tracker/biased_sensor.hpp"
 #include "truebearing/tracker/lorenz_sensor.hpp"
 #include "truebearing/tracker/polar_sensor.hpp"
 #include "truebearing/tracker/position_sensor.hpp"
 #include "truebearing/tracker/position_velocity_sensor.hpp"
 #include "truebearing/tracker/range_bearing_rate_sensor.hpp"
+#include "truebearing/tracker/several_sensors.hpp"
 
 namespace truebearing {
 namespace {
 
 constexpr Range kSigma_deg{0.0, 90.0, true};
+constexpr Range kGate{0.5, 1.0 - 1e-12};
 
 // What a reader takes: the table, the space of the records, and what the standard deviations are multiplied by.
 struct Reading {
@@ -134,26 +143,106 @@ const std::vector<MeasurementKind>& kinds() {
   return the_kinds;
 }
 
+constexpr const char* kSensors = "sensors";
+
+const MeasurementKind& read_kind(TableReader& table, bool or_sensors) {
+  static const MeasurementKind kSeveral{kSensors, {"plane"}, nullptr};
+  std::vector<std::string> models;
+  for (const MeasurementKind& kind : kinds()) models.emplace_back(kind.model);
+  if (or_sensors) models.emplace_back(kSensors);
+  const std::string model = table.choice("model", models);
+  for (const MeasurementKind& kind : kinds())
+    if (model == kind.model) return kind;
+  return kSeveral;
+}
+
+// In the units of the components' names, as files have them.
+std::unique_ptr<AnySensor> without_bias(TableReader& table, std::unique_ptr<AnySensor> sensor) {
+  if (!table.has("bias")) return sensor;
+  const std::vector<double> bias = table.numbers("bias", sensor->size());
+  const std::vector<std::string> components = sensor->measured().components;
+  BoundedVector in_z(sensor->size());
+  for (std::size_t i = 0; i < bias.size(); ++i)
+    in_z[static_cast<Eigen::Index>(i)] = components[i].ends_with("_deg") ? radians(bias[i]) : bias[i];
+  return std::make_unique<BiasedSensor>(std::move(sensor), in_z);
+}
+
+// [sensors.NAME].
+struct OneSensor {
+  std::unique_ptr<AnySensor> sensor;
+  double gate_nis;
+};
+
+OneSensor read_sensor(TableReader table, const StateSpace& space, double factor) {
+  const MeasurementKind& kind = read_kind(table, false);
+  if (std::find(kind.spaces.begin(), kind.spaces.end(), "plane") == kind.spaces.end())
+    throw table.error("model", fmt::format("is \"{}\", which has no meaning in the plane", kind.model));
+  OneSensor one{without_bias(table, kind.read({table, space, factor})), kInfinity};
+  if (table.has("gate_probability"))
+    one.gate_nis = chi_square_quantile(table.number("gate_probability", kGate), one.sensor->size());
+  table.finish();
+  return one;
+}
+
+std::vector<std::string> sorted_names(const TableReader& sensors) {
+  std::vector<std::string> names = sensors.keys();
+  std::sort(names.begin(), names.end());  // as a scenario's are, and a log's
+  return names;
+}
+
+// measurement = { model = "sensors", use = [...], sensors = {...} }.
+MeasurementChoice read_sensors(TableReader& tracker, TableReader& table, double factor) {
+  const std::optional<TableReader> found = table.table_if_present(kSensors);
+  if (!found) throw table.error("model", "is \"sensors\"", "tables [sensors.NAME] in the study");
+  TableReader sensors = *found;
+  const std::vector<std::string> names = sorted_names(sensors);
+  const std::vector<std::string> used = table.has("use") ? table.texts("use") : names;
+  for (const std::string& name : used)
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      throw table.error("use", "names no sensor: \"" + name + "\"", suggestion(name, names));
+  if (used.empty()) throw table.error("use", "is empty", fmt::format("{}", fmt::join(names, ", ")));
+  const StateSpace& space = *find_state_space(tracker.choice_or("space", {"plane", "plane_frequency"}, "plane"));
+  std::vector<SeveralSensors::Part> parts;
+  std::vector<double> gates;
+  for (const std::string& name : names) {
+    OneSensor one = read_sensor(sensors.table(name), space, factor);
+    gates.push_back(one.gate_nis);
+    parts.push_back({name, std::move(one.sensor), std::find(used.begin(), used.end(), name) != used.end()});
+  }
+  MeasurementChoice choice{kSensors, std::make_unique<SeveralSensors>(std::move(parts)), &space,
+                           space == plane_frequency_space()};
+  if (std::any_of(gates.begin(), gates.end(), [](double gate) { return gate < kInfinity; }))
+    choice.gate_nis_of = std::move(gates);
+  return choice;
+}
+
 }  // namespace
 
 MeasurementChoice read_measurement(TableReader& tracker, double factor) {
   TableReader table = tracker.table("measurement");
-  std::vector<std::string> models;
-  for (const MeasurementKind& kind : kinds()) models.emplace_back(kind.model);
-  const std::string model = table.choice("model", models);
-  for (const MeasurementKind& kind : kinds()) {
-    if (model != kind.model) continue;
-    const StateSpace& space = *find_state_space(tracker.choice_or("space", kind.spaces, kind.spaces.front()));
-    MeasurementChoice choice{model, kind.read({table, space, factor}), &space, kind.has_frequency};
+  const MeasurementKind& kind = read_kind(table, true);
+  if (!kind.read) {
+    MeasurementChoice choice = read_sensors(tracker, table, factor);
     table.finish();
     return choice;
   }
-  throw table.error("model", "is \"" + model + "\"");
+  const StateSpace& space = *find_state_space(tracker.choice_or("space", kind.spaces, kind.spaces.front()));
+  MeasurementChoice choice{kind.model, without_bias(table, kind.read({table, space, factor})), &space,
+                           kind.has_frequency};
+  table.finish();
+  return choice;
 }
 
 bool measures(const TableReader& tracker, const std::string& model) {
   const toml::table* measurement = (*tracker.raw())["measurement"].as_table();
   return measurement && (*measurement)["model"].value_or(std::string()) == model;
+}
+
+void check_sensors(TableReader sensors) {
+  const std::vector<std::string> names = sorted_names(sensors);
+  if (names.empty() || names.size() > kMostSensors)
+    throw sensors.error("", fmt::format("names {} of them", names.size()), fmt::format("1 to {}", kMostSensors));
+  for (const std::string& name : names) read_sensor(sensors.table(name), plane_frequency_space(), 1.0);
 }
 
 BearingFrequencySensor read_bearing_frequency_sensor(TableReader& tracker) {

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "truebearing/core/state_space.hpp"
 #include "truebearing/io/table_reader.hpp"
@@ -18,6 +19,7 @@ struct MeasurementChoice {
   std::unique_ptr<AnySensor> sensor;  ///< in `space`
   const StateSpace* space;            ///< of the records
   bool has_frequency = false;         ///< the state has the frequency of the source behind the velocities
+  std::vector<double> gate_nis_of{};  ///< of each of several sensors, where they have gates of their own; else empty
 
   bool is_lorenz() const { return *space == lorenz_space(); }
   int dimensions() const { return *space == line_space() ? 1 : 2; }  ///< d, of positions
@@ -25,9 +27,13 @@ struct MeasurementChoice {
   int leading() const { return 2 * dimensions() + (has_frequency ? 1 : 0); }
 };
 
-/// measurement = { model, ... }, space = "line" | "plane" | "plane_frequency" | "lorenz". Standard deviations are multiplied by
-/// `factor`, as hypotheses of a bank have it. Throws InputError.
+/// measurement = { model, bias, ... }, space = "line" | "plane" | "plane_frequency" | "lorenz". Standard deviations are multiplied by
+/// `factor`, as hypotheses of a bank have it. model = "sensors" reads { use, sensors.NAME = { model, bias,
+/// gate_probability, ... } }, of which a study fills in `sensors` from its own table of that name. Throws InputError.
 MeasurementChoice read_measurement(TableReader& tracker, double factor = 1.0);
+
+/// A study's table [sensors.NAME], by itself. Throws InputError.
+void check_sensors(TableReader sensors);
 
 /// Does the tracker's `measurement` say this model?
 bool measures(const TableReader& tracker, const std::string& model);

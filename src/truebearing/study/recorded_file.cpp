@@ -94,6 +94,10 @@ RecordingOptions read_log_table(TableReader table) {
   if (auto columns = table.table_if_present("columns"))
     for (const std::string& name : columns->keys()) options.columns.emplace_back(name, columns->text(name));
   options.sort_window_s = table.number_or("sort_window_s", 0.0, kNonNegative);
+  if (auto late = table.table_if_present("late")) {
+    options.late_keep_s = late->number("keep_s", kPositive);
+    late->finish();
+  }
   options.target = table.text_or("track", "");
   table.finish();
   return options;

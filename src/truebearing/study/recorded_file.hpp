@@ -29,7 +29,7 @@ struct RecordedSpec {
 RecordedSpec read_recorded_spec(TableReader table);
 
 /// The study's table [log], which says how logs are read that it is given: `columns` = { name in the file = name here },
-/// `sort_window_s`, `track`; all optional.
+/// `sort_window_s`, `late.keep_s`, `track`; all optional.
 RecordingOptions read_log_table(TableReader table);
 
 class RecordedFile final : public Scenario {

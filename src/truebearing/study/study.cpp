@@ -6,6 +6,7 @@
 
 #include "truebearing/io/file.hpp"
 #include "truebearing/study/configuration_text.hpp"
+#include "truebearing/study/measurement_kinds.hpp"
 #include "truebearing/study/published_rows.hpp"
 #include "truebearing/tracker/step_log_scenario.hpp"
 
@@ -42,6 +43,7 @@ void Study::read(const StudyFile& file) {
   scenario_file_ = is_inside ? path_.string() : reader.resolve(reader.text("scenario")).string();
   scenario_table_ = is_inside ? reader.table("scenario").raw() : read_toml_file(scenario_file_);
   scenario_ = read_scenario(TableReader(scenario_table_, scenario_file_, is_inside ? "scenario" : ""), kMoreScenarios);
+  if (auto sensors = reader.table_if_present("sensors")) check_sensors(std::move(*sensors));
   if (auto recorded = reader.table_if_present("recorded")) recorded_ = read_recorded_spec(std::move(*recorded));
   if (auto log = reader.table_if_present("log")) log_ = read_log_table(std::move(*log));
   if (auto sets = reader.table_if_present("sets"))
@@ -118,8 +120,10 @@ std::unique_ptr<Scenario> Study::scenario(const ChangedScenario& changed) const 
 
 RecordingOptions Study::recording_options() const {
   RecordingOptions options = log_;
-  if (const std::optional<Measured> measured = scenario_->measured(); measured && !measured->is_step_log())
+  if (const std::optional<Measured> measured = scenario_->measured(); measured && !measured->is_step_log()) {
     options.measured = measured->components;
+    options.sources = measured->sources;
+  }
   return options;
 }
 

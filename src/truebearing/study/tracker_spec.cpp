@@ -87,8 +87,9 @@ SharedTable own_table(const StudyFile& file, const std::string& name) {
   return nullptr;
 }
 
+// sensors: the study's, which a tracker of several reads as if it had said them itself; nullptr where there are none.
 TrackerSpec read_tracker_spec(const std::string& name, const SharedTable& resolved, const SharedTable& own,
-                              const std::string& file) {
+                              const toml::table* sensors, const std::string& file) {
   TrackerSpec spec;
   spec.name = name;
   spec.own = own;
@@ -110,6 +111,10 @@ TrackerSpec read_tracker_spec(const std::string& name, const SharedTable& resolv
   }
   toml::table configuration = *resolved;
   for (const char* key : kStudyKeys) configuration.erase(key);
+  if (sensors)
+    if (toml::table* measurement = configuration["measurement"].as_table();
+        measurement && (*measurement)["model"].value_or(std::string()) == "sensors")
+      measurement->insert("sensors", *sensors);
   spec.configuration = std::make_shared<const toml::table>(std::move(configuration));
   return spec;
 }
@@ -121,7 +126,8 @@ std::vector<TrackerSpec> read_tracker_specs(const StudyFile& file, const std::st
   ResolvedTables resolved(trackers);
   std::vector<TrackerSpec> specs;
   for (const std::string& tracker : file.trackers)
-    specs.push_back(read_tracker_spec(tracker, resolved.of(tracker), own_table(file, tracker), name));
+    specs.push_back(read_tracker_spec(tracker, resolved.of(tracker), own_table(file, tracker),
+                                      (*file.table)["sensors"].as_table(), name));
   if (specs.empty()) throw trackers.error("", "names no tracker", "at least one");
   return specs;
 }

@@ -14,7 +14,8 @@ namespace truebearing {
 std::unique_ptr<Tracker> make_raw_tracker(TableReader& table) {
   const std::vector<std::string> components = table.texts("components");
   const std::vector<double> sigma = table.numbers("sigma", static_cast<int>(components.size()), kPositive);
-  if (components.size() > kMaxDimension) throw table.error("components", "are too many", fmt::format("at most {}", kMaxDimension));
+  if (components.size() > kMaxDimension)
+    throw table.error("components", "are too many", fmt::format("at most {}", kMaxDimension));
   return std::make_unique<RawTracker>(
       state_space_of_components(components),
       BoundedVector(Eigen::Map<const Eigen::VectorXd>(sigma.data(), static_cast<Eigen::Index>(sigma.size()))));

@@ -30,6 +30,14 @@ void Ensemble::reset() {
   }
 }
 
+std::string Ensemble::assign(const Ensemble& other) {
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    members_[i].records = {};
+    if (!members_[i].tracker->assign(*other.members_[i].tracker)) return members_[i].name;
+  }
+  return {};
+}
+
 Ensemble Ensemble::fresh() const {
   Ensemble copy;
   for (const Member& member : members_) copy.add(member.name, member.tracker->fresh());

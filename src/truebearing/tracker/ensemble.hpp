@@ -30,6 +30,9 @@ class Ensemble {
   void step(const Measurement& measurement);
   void reset();
   Ensemble fresh() const;
+  /// Its members become copies of the other's (Tracker::assign()), without records. The name of one that cannot, else
+  /// empty.
+  std::string assign(const Ensemble& other);
 
   /// The records of the last step. Valid until the next step.
   std::span<const StepRecord> records(int member) const { return at(member).records; }

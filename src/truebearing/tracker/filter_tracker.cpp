@@ -85,6 +85,7 @@ std::span<const StepRecord> FilterTracker::step(const Measurement& measurement) 
   clear_blocks();
   record_.time_s = measurement.time_s;
   record_.sensor = measurement.sensor;
+  record_.source = measurement.source;
 
   // The filter stays at its last used measurement: a missing one leaves no trace in what follows, to the bit.
   kept_->assign(*state_);
@@ -129,6 +130,26 @@ std::unique_ptr<Tracker> FilterTracker::fresh() const {
   return std::make_unique<FilterTracker>(*space_, state_->fresh(), sensor_->fresh(), start_, options_);
 }
 
+bool FilterTracker::assign(const Tracker& tracker) {
+  const auto* other = dynamic_cast<const FilterTracker*>(&tracker);
+  if (!other) return false;
+  guard_ = other->guard_;
+  gates_ = other->gates_;
+  begun_ = other->begun_;
+  state_->assign(*other->state_);
+  used_time_s_ = other->used_time_s_;
+  lost_ = other->lost_;
+  failed_in_row_ = other->failed_in_row_;
+  challenger_->assign(*other->challenger_);
+  challenger_time_s_ = other->challenger_time_s_;
+  agreeing_ = other->agreeing_;
+  turned_away_ = other->turned_away_;
+  pending_ = other->pending_;
+  guess_ = other->guess_;
+  record_ = other->record_;
+  return true;
+}
+
 RecordBlocks FilterTracker::blocks() const {
   return {.prediction = true,
           .innovation = true,
@@ -153,7 +174,9 @@ void FilterTracker::restart(double time_s) {
 // What came before a state that begins anew.
 void FilterTracker::forget() {
   pending_.reset();
-  gate_ = Gate(options_.gate_nis);
+  gates_.clear();
+  for (const double gate_nis : options_.gate_nis_of) gates_.emplace_back(gate_nis);
+  if (gates_.empty()) gates_.emplace_back(options_.gate_nis);
   lost_ = false;
   failed_in_row_ = 0;
   forget_challenger();
@@ -201,13 +224,14 @@ StepStatus FilterTracker::update(const Measurement& measurement) {
   }
   with_length(taken, [&](const auto& sized) { innovation.z = sized.z; });
   failed_in_row_ = 0;
-  switch (gate_.judge(innovation.nis)) {
+  Gate& gate = gate_of(measurement);
+  switch (gate.judge(innovation.nis)) {
     case Gate::Verdict::passes:
       forget_challenger();
       break;
     case Gate::Verdict::passes_widened:
       predict_again();
-      widen(*state_, innovation.nis / gate_.threshold());
+      widen(*state_, innovation.nis / gate.threshold());
       forget_challenger();
       if (state_->update(taken, {innovation.nu, innovation.S, gain, innovation.nis}) == StepStatus::failed) {
         predict_again();
@@ -233,6 +257,11 @@ StepStatus FilterTracker::update(const Measurement& measurement) {
   return StepStatus::ok;
 }
 
+// A sensor that goes wrong opens no gate but its own.
+Gate& FilterTracker::gate_of(const Measurement& measurement) {
+  return gates_.size() == 1 ? gates_.front() : gates_[static_cast<std::size_t>(measurement.source)];
+}
+
 // Measurements that the gate turns away one after another, and that agree with each other, are the target: then it was
 // the track that was wrong. True where a start of their own takes over.
 bool FilterTracker::challenge(const Measurement& measurement, double nis) {
@@ -244,7 +273,7 @@ bool FilterTracker::challenge(const Measurement& measurement, double nis) {
     return challenger_->update(sensor_->take(measurement, expected), update) == StepStatus::ok;
   };
   if (agreeing_ >= first && cross(measurement.time_s - challenger_time_s_, *challenger_) == StepStatus::ok &&
-      challenger_takes() && update.nis <= gate_.threshold()) {
+      challenger_takes() && update.nis <= gate_of(measurement).threshold()) {
     ++agreeing_;
   } else if (const std::optional<PriorStart> start = start_at(turned_away_, measurement)) {
     challenger_->begin(start->x.data(), start->P.data());
@@ -252,7 +281,7 @@ bool FilterTracker::challenge(const Measurement& measurement, double nis) {
   } else if (first == 1) {
     // Measurements begin no track: what was predicted, with the covariance that lets this one pass.
     challenger_->assign(*state_);
-    widen(*challenger_, nis / gate_.threshold());
+    widen(*challenger_, nis / gate_of(measurement).threshold());
     agreeing_ = challenger_takes() ? 1 : 0;
   } else {
     agreeing_ = 1;  // the first of two points

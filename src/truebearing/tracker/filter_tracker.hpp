@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "truebearing/filter/tracked_state.hpp"
 #include "truebearing/tracker/any_sensor.hpp"
@@ -29,6 +30,8 @@ struct FilterTrackerOptions {
   /// What is published is where the target will be in so many seconds; the filter itself goes on without that. Not with
   /// output_pull.
   double ahead_s = 0.0;
+  /// In place of gate_nis, of each of several sensors; else empty.
+  std::vector<double> gate_nis_of{};
 };
 
 /// A state of more components than `space` has is published without the last of them.
@@ -45,6 +48,7 @@ class FilterTracker : public Successor {
   void take_over(double time_s, const BoundedVector& x, const BoundedMatrix& P) override;
   bool is_lost() const override { return lost_ || !begun_; }
   std::unique_ptr<Tracker> fresh() const override;
+  bool assign(const Tracker& other) override;
 
   const StateSpace& space() const override { return *space_; }
   std::optional<Measured> measures() const override { return sensor_->measured(); }
@@ -60,6 +64,7 @@ class FilterTracker : public Successor {
   std::span<const StepRecord> start_from(const Measurement& measurement);
   std::optional<PriorStart> start_at(const std::optional<Measurement>& waiting, const Measurement& measurement);
   void add_motion(double dt_s, PriorStart& start);
+  Gate& gate_of(const Measurement& measurement);
   bool challenge(const Measurement& measurement, double nis);
   std::span<const StepRecord> give_up();
   StepStatus cross(double dt_s, TrackedState& state) const;
@@ -78,7 +83,7 @@ class FilterTracker : public Successor {
   FilterTrackerOptions options_;
 
   StreamGuard guard_;
-  Gate gate_;
+  std::vector<Gate> gates_;  // of each sensor
   bool begun_ = false;
   // At the last measurement that was used, between steps. Within one the state goes on, and what it was is kept.
   std::unique_ptr<TrackedState> state_;

@@ -12,7 +12,7 @@ namespace truebearing {
 std::span<const StepRecord> FilterTracker::start_from(const Measurement& measurement) {
   const std::optional<PriorStart> start = start_at(pending_, measurement);
   if (!start) {
-    pending_ = measurement;
+    if (sensor_->fix(measurement)) pending_ = measurement;
     return {};
   }
   begin(*start);
@@ -27,29 +27,33 @@ std::span<const StepRecord> FilterTracker::start_from(const Measurement& measure
   used_time_s_ = measurement.time_s;
   record_.time_s = measurement.time_s;
   record_.sensor = measurement.sensor;
+  record_.source = measurement.source;
   return {&record_, 1};
 }
 
 // The state that a measurement begins, with the one before it where it needs two. Nothing where that is not there, or so
-// long ago that the target would be lost, or where measurements begin no track.
+// long ago that the target would be lost, or where measurements, or that sensor's, begin no track.
 std::optional<PriorStart> FilterTracker::start_at(const std::optional<Measurement>& waiting,
                                                   const Measurement& measurement) {
   const int n = state_->size();
   if (const auto* prior = std::get_if<RangePrior>(&start_)) {
     if (!prior->suffices_with(guess_)) return {};
     const std::optional<Sight> sight = sensor_->sight(measurement);
+    if (!sight) return {};
     const GaussianState plane = prior->state(sight->bearing_rad, sight->sigma_rad, sight->from, guess_);
     const std::optional<PriorStart> start = sensor_->believe(plane, measurement);
     return start ? std::optional(lengthened(*start, n, 0.0)) : std::nullopt;
   }
+  const std::optional<PositionFix> fix = sensor_->fix(measurement);
+  if (!fix) return {};
   if (const auto* one_point = std::get_if<OnePointStart>(&start_))
-    return lengthened(one_point_state(*sensor_->fix(measurement), one_point->velocity_sigma_mps), n,
-                      one_point->rest_sigma);
+    return lengthened(one_point_state(*fix, *one_point), n, one_point->rest_sigma);
   const auto* two_point = std::get_if<TwoPointStart>(&start_);
   const double dt_s = waiting ? measurement.time_s - waiting->time_s : 0.0;
   if (!two_point || !(dt_s > 0.0) || dt_s > options_.lost_after_s) return {};
-  PriorStart start =
-      lengthened(two_point_state(*sensor_->fix(*waiting), *sensor_->fix(measurement), dt_s), n, two_point->rest_sigma);
+  const std::optional<PositionFix> first = sensor_->fix(*waiting);
+  if (!first) return {};
+  PriorStart start = lengthened(two_point_state(*first, *fix, dt_s), n, two_point->rest_sigma);
   add_motion(dt_s, start);
   return start;
 }

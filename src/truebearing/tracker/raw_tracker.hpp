@@ -31,6 +31,11 @@ class RawTracker final : public Tracker {
     record_.space = space_;
   }
 
+  bool assign(const Tracker& other) override {
+    const auto* raw = dynamic_cast<const RawTracker*>(&other);
+    if (raw) *this = *raw;
+    return raw != nullptr;
+  }
   std::unique_ptr<Tracker> fresh() const override { return std::make_unique<RawTracker>(*space_, sigma_); }
   const StateSpace& space() const override { return *space_; }
   std::optional<Measured> measures() const override { return Measured::of(space_->components); }

@@ -3,8 +3,10 @@
 
 namespace truebearing {
 
-PriorStart one_point_state(const PositionFix& fix, double velocity_sigma_mps) {
+PriorStart one_point_state(PositionFix fix, const OnePointStart& one_point) {
+  const double velocity_sigma_mps = one_point.velocity_sigma_mps, position_sigma_m = one_point.position_sigma_m;
   const Eigen::Index d = fix.z.size();
+  if (position_sigma_m > 0.0) fix.R = position_sigma_m * position_sigma_m * BoundedMatrix::Identity(d, d);
   PriorStart start{BoundedVector::Zero(2 * d),
                    velocity_sigma_mps * velocity_sigma_mps * BoundedMatrix::Identity(2 * d, 2 * d)};
   start.x.head(d) = fix.z;

@@ -21,6 +21,7 @@ struct PriorStart {
 struct OnePointStart {
   double velocity_sigma_mps = 0.0;  ///< per axis
   double rest_sigma = 0.0;          ///< of each component behind the velocities, which begin at 0
+  double position_sigma_m = 0.0;    ///< per axis, in place of R where it is given; else 0
 };
 
 /// Two-point differencing (Bar-Shalom, Li and Kirubarajan 2001, sec. 5.5.3) of measured positions z1, z2 (d), dt apart,
@@ -43,7 +44,7 @@ struct PositionFix {
   BoundedMatrix R;
 };
 
-PriorStart one_point_state(const PositionFix& fix, double velocity_sigma_mps);
+PriorStart one_point_state(PositionFix fix, const OnePointStart& start);
 /// dt_s > 0.
 PriorStart two_point_state(const PositionFix& first, const PositionFix& second, double dt_s);
 

@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <iterator>
 #include <limits>
+#include <set>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "truebearing/core/covariance.hpp"
 #include "truebearing/core/error.hpp"
@@ -65,6 +68,22 @@ BoundedMatrix read_triangle(const CsvReader& csv, const std::vector<int>& column
   return A;
 }
 
+// To what is there: of sensors that measure less than others the last cells are empty.
+void shorten(Innovation& innovation) {
+  Eigen::Index size = innovation.nu.size();
+  while (size > 1 && std::isnan(innovation.nu[size - 1]) && std::isnan(innovation.S(size - 1, size - 1))) --size;
+  innovation.z.conservativeResize(size);
+  innovation.nu.conservativeResize(size);
+  innovation.S.conservativeResize(size, size);
+}
+
+// By the place of its sensor's name among all of them.
+void number_sources(const std::vector<std::string>& sensors, std::vector<StepRecord>& records) {
+  const std::set<std::string> names(sensors.begin(), sensors.end());
+  for (std::size_t k = 0; k < sensors.size(); ++k)
+    records[k].source = static_cast<int>(std::distance(names.begin(), names.find(sensors[k])));
+}
+
 StepStatus read_status(const CsvReader& csv, int column) {
   if (column < 0) return StepStatus::ok;
   const std::string_view text = csv.text(static_cast<std::size_t>(column));
@@ -75,8 +94,11 @@ StepStatus read_status(const CsvReader& csv, int column) {
                   "ok, rejected, coasted, unobservable, failed");
 }
 
-std::vector<std::string> log_header(const StateSpace& space, int measurements) {
+std::vector<std::string> log_header(const StateSpace& space, const StepLogWriter::Columns& columns) {
+  const int measurements = columns.measurements;
   std::vector<std::string> header{"time_s", "tracker", "track", "status"};
+  if (!columns.sensors.empty()) header.emplace_back("sensor");
+  if (columns.revised) header.emplace_back("revised");
   for (const std::string& component : space.components) header.push_back("x_" + component);
   const auto add_triangle = [&](const char* name, int size) {
     for (int i = 1; i <= size; ++i)
@@ -108,7 +130,8 @@ StepLog read_rows(CsvReader& csv, const std::string& tracker) {
   const std::vector<int> z_columns = vector_columns(csv, "z");
   const std::vector<int> nu_columns = vector_columns(csv, "nu");
   const std::vector<int> S_columns = triangle_columns(csv, "S", nu_columns.size());
-  const int status_column = csv.column("status");
+  const int status_column = csv.column("status"), sensor_column = csv.column("sensor");
+  std::vector<std::string> sensors;  // of each record
   log.has_innovation = !nu_columns.empty() && z_columns.size() == nu_columns.size() && !S_columns.empty();
   if (z_columns.size() > kMaxDimension)
     throw InputError(csv.name(), fmt::format("has {} columns z", z_columns.size()),
@@ -142,15 +165,18 @@ StepLog read_rows(CsvReader& csv, const std::string& tracker) {
     if (log.has_innovation) {
       Innovation innovation{read_vector(csv, z_columns), read_vector(csv, nu_columns),
                             read_triangle(csv, S_columns, static_cast<Eigen::Index>(nu_columns.size())), 0.0};
+      shorten(innovation);
       innovation.nis = mahalanobis_squared(innovation.S, innovation.nu);
       if (std::isfinite(innovation.nis)) record.innovation = innovation;
     }
+    if (sensor_column >= 0) sensors.emplace_back(csv.text(static_cast<std::size_t>(sensor_column)));
     log.records.push_back(record);
-    log.z.push_back(read_vector(csv, z_columns));
+    log.z.push_back(record.innovation ? record.innovation->z : read_vector(csv, z_columns));
     log.truth.push_back(read_vector(csv, truth_columns));
   }
   if (log.records.empty())
     throw InputError(csv.name(), tracker.empty() ? "has no rows" : "has no rows of the tracker \"" + tracker + "\"");
+  number_sources(sensors, log.records);
   return log;
 }
 
@@ -186,23 +212,26 @@ std::vector<std::string> trackers_in_step_log(const std::filesystem::path& path)
   return trackers;
 }
 
-StepLogWriter::StepLogWriter(const StateSpace& space, int measurements)
-    : states_(space.size()), measurements_(measurements), csv_(log_header(space, measurements)), header_(csv_.take()) {}
+StepLogWriter::StepLogWriter(const StateSpace& space, Columns columns)
+    : states_(space.size()), columns_(std::move(columns)), csv_(log_header(space, columns_)), header_(csv_.take()) {}
 
-void StepLogWriter::add(const std::string& tracker, const StepRecord& record) {
+void StepLogWriter::add(const std::string& tracker, const StepRecord& record, bool revised) {
+  const int measurements = columns_.measurements;
   csv_.number(record.time_s);
   csv_.text(tracker);
   csv_.number(record.track);
   csv_.text(to_string(record.status));
+  if (!columns_.sensors.empty()) csv_.text(columns_.sensors[static_cast<std::size_t>(record.source)]);
+  if (columns_.revised) csv_.number(revised ? 1 : 0);
   for (int i = 0; i < states_; ++i) csv_.number(record.x[i]);
   for (int i = 0; i < states_; ++i)
     for (int j = i; j < states_; ++j) csv_.number(record.P(i, j));
   const int told = record.innovation ? static_cast<int>(record.innovation->nu.size()) : 0;
   const bool has_z = told > 0 && record.innovation->z.size() == told;
-  for (int i = 0; i < measurements_; ++i) csv_.number(has_z && i < told ? record.innovation->z[i] : kMissing);
-  for (int i = 0; i < measurements_; ++i) csv_.number(i < told ? record.innovation->nu[i] : kMissing);
-  for (int i = 0; i < measurements_; ++i)
-    for (int j = i; j < measurements_; ++j) csv_.number(j < told ? record.innovation->S(i, j) : kMissing);
+  for (int i = 0; i < measurements; ++i) csv_.number(has_z && i < told ? record.innovation->z[i] : kMissing);
+  for (int i = 0; i < measurements; ++i) csv_.number(i < told ? record.innovation->nu[i] : kMissing);
+  for (int i = 0; i < measurements; ++i)
+    for (int j = i; j < measurements; ++j) csv_.number(j < told ? record.innovation->S(i, j) : kMissing);
   csv_.end_row();
   rows_.push_back({record.time_s, csv_.take()});
 }

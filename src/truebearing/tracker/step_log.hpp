@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The step log: what trackers did, as CSV. It is what `truebearing track -o` writes, and how a tracker that runs
 // elsewhere (an existing system, MATLAB, Stone Soup) joins the house. Columns: `time_s`, `track`, `x_<component>`,
-// `P_<i>_<j>` (upper triangle, from 1), and where they exist `tracker`, `status`, `z_<i>`, `nu_<i>`, `S_<i>_<j>`,
-// `truth_<component>`.
+// `P_<i>_<j>` (upper triangle, from 1), and where they exist `tracker`, `status`, `sensor`, `z_<i>`, `nu_<i>`, `S_<i>_<j>`,
+// `truth_<component>`. Of sensors that measure less than others the last cells of z, nu and S are empty.
 #pragma once
 
 #include <filesystem>
@@ -42,9 +42,15 @@ class StepLogWriter {
  public:
   /// measurements: size of z; 0 leaves the innovation's columns out. Innovations of fewer components fill the first
   /// ones.
-  StepLogWriter(const StateSpace& space, int measurements);
+  struct Columns {
+    int measurements = 0;
+    std::vector<std::string> sensors{};  ///< names of several, by StepRecord::source; a column says which then
+    bool revised = false;                ///< a column says whether a row stands in place of one before it
+  };
+  StepLogWriter(const StateSpace& space, Columns columns);
+  StepLogWriter(const StateSpace& space, int measurements) : StepLogWriter(space, Columns{measurements}) {}
 
-  void add(const std::string& tracker, const StepRecord& record);
+  void add(const std::string& tracker, const StepRecord& record, bool revised = false);
   /// Puts the rows in the order of their times, which a log must have; rows of one time stay as they were added.
   void sort_by_time();
   std::string str() const;
@@ -54,7 +60,7 @@ class StepLogWriter {
 
  private:
   int states_;
-  int measurements_;
+  Columns columns_;
   CsvWriter csv_;
   std::string header_;  // until it is taken
   struct Row {

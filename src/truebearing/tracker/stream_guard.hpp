@@ -40,12 +40,13 @@ class StreamGuard {
       advance(measurement.time_s);
       return Verdict::missing;
     }
-    if (started_ && measurement.time_s == time_s_ && is_last(measurement.z)) {
+    if (started_ && measurement.time_s == time_s_ && measurement.source == source_ && is_last(measurement.z)) {
       ++counts.repeated;
       return Verdict::repeated;
     }
     advance(measurement.time_s);
     last_z_ = measurement.z;
+    source_ = measurement.source;
     return Verdict::usable;
   }
 
@@ -67,6 +68,7 @@ class StreamGuard {
   bool started_ = false;
   double time_s_ = 0.0;
   BoundedVector last_z_;
+  int source_ = 0;
 };
 
 }  // namespace truebearing

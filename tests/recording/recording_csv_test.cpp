@@ -53,6 +53,26 @@ TEST(RecordingCsv, AnglesAreRadiansInside) {
   EXPECT_EQ(log.measurements[0].sigma(1), 0.5);
 }
 
+TEST(RecordingCsv, ReadsWhatIsMeasuredInSpace) {
+  const Recording radar = read(
+      "time_s,range_km,bearing_deg,elevation_deg,range_rate_kn,truth_east_m,truth_north_m,truth_altitude_m\n"
+      "0,5,90,30,36,4000,0,2500\n");
+  EXPECT_THAT(radar.measured, ElementsAre("range_m", "bearing_deg", "elevation_deg", "range_rate_mps"));
+  EXPECT_NEAR(radar.measurements[0].z[2], radians(30.0), 1e-12);
+  EXPECT_NEAR(radar.measurements[0].z[3], 36.0 * 1852.0 / 3600.0, 1e-9);
+  EXPECT_EQ(radar.truth_space, &space_space());
+  EXPECT_EQ(radar.truth[0].x[0][2], 2500.0);
+
+  RecordingOptions options;
+  options.measured = {"east_m", "north_m", "up_m"};
+  std::istringstream stream(
+      "time_s,east_m,north_m,altitude_m,altitude_sigma_m,east_sigma_m,north_sigma_m\n0,1,2,3,6,4,5\n");
+  const Recording wanted = read_recording(stream, "log.csv", options);
+  EXPECT_EQ(wanted.measurements[0].z, BoundedVector(Eigen::Vector3d(1, 2, 3)));
+  EXPECT_EQ(wanted.measurements[0].sigma, BoundedVector(Eigen::Vector3d(4, 5, 6)));
+  EXPECT_THAT(read("time_s,east_m,north_m,altitude_m\n0,1,2,3\n").measured, ElementsAre("east_m", "north_m"));
+}
+
 TEST(RecordingCsv, OwnShipMayBePositionOrPositionAndVelocity) {
   const std::string header = "time_s,bearing_deg,sensor_east_m,sensor_north_m";
   const Recording position = read(header + "\n0,90,5,6\n");

@@ -14,6 +14,7 @@ constexpr const char* kValues = "values";  // of a log whose columns are of no k
 
 Measured Measured::position(int dimensions) {
   if (dimensions == 1) return {"position", {"position_m"}};
+  if (dimensions == 3) return {"position", {"east_m", "north_m", "up_m"}};
   return {"position", {"east_m", "north_m"}};
 }
 
@@ -55,8 +56,8 @@ Measured Measured::step_log(const StateSpace& space) {
 }
 
 Measured Measured::of(std::vector<std::string> components) {
-  for (Measured known : {position(1), position(2), position_velocity(), range_bearing(), bearing(), bearing_frequency(),
-                         lorenz(), snapshots()})
+  for (Measured known : {position(1), position(2), position(3), position_velocity(), range_bearing(), bearing(),
+                         bearing_frequency(), lorenz(), snapshots()})
     if (known.components == components) return known;
   return {kValues, std::move(components)};
 }

@@ -33,7 +33,7 @@ struct Measured {
   /// Its components are states then; what was measured beside them stands in the log alone.
   bool is_step_log() const { return kind == "step_log"; }
 
-  /// On a line (1 dimension) "position_m", in the plane (2) "east_m" and "north_m".
+  /// On a line (1 dimension) "position_m", in the plane (2) "east_m" and "north_m", in space (3) "up_m" with them.
   static Measured position(int dimensions);
   /// On a line.
   static Measured position_velocity();

@@ -23,8 +23,11 @@ constexpr std::array kKnown{
     KnownColumn{"position", Dimension::length, ColumnRole::measured, "position_m"},
     KnownColumn{"east", Dimension::length, ColumnRole::measured, "east_m"},
     KnownColumn{"north", Dimension::length, ColumnRole::measured, "north_m"},
+    KnownColumn{"up", Dimension::length, ColumnRole::measured, "up_m"},
     KnownColumn{"range", Dimension::length, ColumnRole::measured, "range_m"},
+    KnownColumn{"range_rate", Dimension::speed, ColumnRole::measured, "range_rate_mps"},
     KnownColumn{"bearing", Dimension::angle, ColumnRole::measured, "bearing_deg"},
+    KnownColumn{"elevation", Dimension::angle, ColumnRole::measured, "elevation_deg"},
     KnownColumn{"frequency", Dimension::frequency, ColumnRole::measured, "frequency_hz"},
     KnownColumn{"sensor_east", Dimension::length, ColumnRole::sensor, "sensor_east_m"},
     KnownColumn{"sensor_north", Dimension::length, ColumnRole::sensor, "sensor_north_m"},
@@ -113,6 +116,7 @@ class LayoutReader {
       return;
     }
     if (name.unit->dimension == Dimension::time) return;
+    name_altitude(name, is_truth);
     column.factor = name.unit->factor;
     column.quantity = name_here(name);
     column.role = ColumnRole::measured;
@@ -126,6 +130,13 @@ class LayoutReader {
       column.role = ColumnRole::sigma;
       column.quantity = sigma_name(name_here(name));
     }
+  }
+
+  // An altitude is what is up where that is wanted, and in a truth; else it stands beside what is measured.
+  void name_altitude(NameAndUnit& name, bool is_truth) const {
+    if (!is_truth && !contains(options_.measured, "up_m")) return;
+    if (name.stem == "altitude") name.stem = "up";
+    if (name.stem == "altitude_sigma") name.stem = "up_sigma";
   }
 
   // The components of the Lorenz attractor, which have no unit.
@@ -243,7 +254,8 @@ class LayoutReader {
     }
     // The smallest that has them all; a frequency alone says nothing of the plane.
     const std::vector<std::string> kFrequencyAlone{"frequency_hz"};
-    for (const StateSpace* space : {&line_space(), &plane_space(), &plane_frequency_space(), &lorenz_space()}) {
+    for (const StateSpace* space :
+         {&line_space(), &plane_space(), &plane_frequency_space(), &space_space(), &lorenz_space()}) {
       const auto known = [&](const std::string& component) { return space->component_index(component) >= 0; };
       if (!layout_.truth_space && given != kFrequencyAlone && std::all_of(given.begin(), given.end(), known))
         layout_.truth_space = space;

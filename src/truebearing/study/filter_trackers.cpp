@@ -24,7 +24,7 @@ namespace {
 // What the filters ask of measurements beyond a Jacobian.
 void check_filter(const TableReader& tracker, const std::string& key, FilterKind filter,
                   const MeasurementChoice& measurement) {
-  const bool bearings = measurement.sensor->tells_bearing();
+  const bool bearings = measurement.sensor->tells_bearing() && measurement.dimensions() == 2;
   if (filter == FilterKind::modified_gain && !bearings)
     throw tracker.error(key, "is \"modified_gain\", which \"" + measurement.model + "\" has none of",
                         "measurement.model = \"bearing\" or \"bearing_frequency\"");
@@ -113,7 +113,7 @@ std::unique_ptr<Tracker> make_kalman_bank(TableReader& table) {
   const FilterKind filter = read_filter(table, measurement, false, {"kalman", "unscented", "modified_gain"});
   if (measurement.is_lorenz())
     throw table.error("kind", "is \"kalman_bank\", which supposes velocities that \"lorenz\" has none of",
-                      "measurements of a target on the line or in the plane");
+                      "measurements of a target on the line, in the plane or in space");
   const int d = measurement.dimensions();
   const std::vector<double> velocities = table.numbers("prior_velocities_mps");
   const std::vector<double> variance_factors = table.numbers("measurement_variance_factors", -1, kPositive);
@@ -121,7 +121,8 @@ std::unique_ptr<Tracker> make_kalman_bank(TableReader& table) {
   const std::size_t supposed = velocities.size() / static_cast<std::size_t>(d);
   const std::size_t filters = supposed * variance_factors.size() * noise_factors.size();
   if (velocities.size() % static_cast<std::size_t>(d) != 0)
-    throw table.error("prior_velocities_mps", fmt::format("has {} numbers", velocities.size()), "pairs: East, North");
+    throw table.error("prior_velocities_mps", fmt::format("has {} numbers", velocities.size()),
+                      d == 2 ? "pairs: East, North" : "triples: East, North, up");
   if (filters == 0 || filters > kMost)
     throw table.error("prior_velocities_mps", "makes a bank of " + std::to_string(filters), "1 to 100000 filters");
 

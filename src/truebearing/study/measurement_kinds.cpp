@@ -22,6 +22,7 @@
 #include "truebearing/tracker/position_velocity_sensor.hpp"
 #include "truebearing/tracker/range_bearing_rate_sensor.hpp"
 #include "truebearing/tracker/several_sensors.hpp"
+#include "truebearing/tracker/space_sensor.hpp"
 
 namespace truebearing {
 namespace {
@@ -51,6 +52,8 @@ std::unique_ptr<AnySensor> read_position(const Reading& reading) {
   const bool reported = reading.table.boolean_or("reported", true);
   if (reading.space == line_space())
     return sensor_of(PositionSensor<1>{PositionSensor<1>::Sigma(sigma_m), factor, reported});
+  if (reading.space == space_space())
+    return sensor_of(PositionSensor<3>{PositionSensor<3>::Sigma::Constant(sigma_m), factor, reported});
   return sensor_of(PositionSensor<2>{{sigma_m, sigma_m}, factor, reported});
 }
 
@@ -122,6 +125,49 @@ std::unique_ptr<AnySensor> read_lorenz(const Reading& reading) {
   return sensor_of(sensor);
 }
 
+// Of the components that are measured: M of range, bearing, elevation and range rate, or the two angles alone.
+template <int M>
+SpaceSite<M> read_space_site(const Reading& reading) {
+  TableReader& table = reading.table;
+  SpaceSite<M> site;
+  site.sigma_factor = read_factor(reading);
+  const double bearing_rad = radians(table.number("bearing_sigma_deg", kSigma_deg));
+  const double elevation_rad = radians(table.number("elevation_sigma_deg", kSigma_deg));
+  if constexpr (M == 2)
+    site.sigma << bearing_rad, elevation_rad;
+  else
+    site.sigma.template head<3>() << table.number("range_sigma_m", kPositive), bearing_rad, elevation_rad;
+  if constexpr (M == 4) site.sigma[3] = table.number("range_rate_sigma_mps", kPositive);
+  if (table.has("site_m")) site.site_m = Eigen::Map<const Eigen::Vector3d>(table.numbers("site_m", 3).data());
+  return site;
+}
+
+// Of range and range rate.
+double read_correlation(TableReader& table) {
+  constexpr double kNearlyOne = 0.999;
+  return table.number_or("range_rate_correlation", 0.0, {-kNearlyOne, kNearlyOne});
+}
+
+std::unique_ptr<AnySensor> read_elevation(const Reading& reading) {
+  return sensor_of(RangeBearingElevationSensor{read_space_site<3>(reading)});
+}
+
+std::unique_ptr<AnySensor> read_converted_elevation(const Reading& reading) {
+  return sensor_of(ConvertedElevationSensor{read_space_site<3>(reading)});
+}
+
+std::unique_ptr<AnySensor> read_elevation_rate(const Reading& reading) {
+  return sensor_of(RangeBearingElevationRateSensor{read_space_site<4>(reading), read_correlation(reading.table)});
+}
+
+std::unique_ptr<AnySensor> read_converted_elevation_rate(const Reading& reading) {
+  return sensor_of(ConvertedElevationRateSensor{read_space_site<4>(reading), read_correlation(reading.table)});
+}
+
+std::unique_ptr<AnySensor> read_two_angles(const Reading& reading) {
+  return sensor_of(BearingElevationSensor{read_space_site<2>(reading)});
+}
+
 struct MeasurementKind {
   const char* model;
   std::vector<std::string> spaces;  ///< the first is the default
@@ -131,13 +177,18 @@ struct MeasurementKind {
 
 const std::vector<MeasurementKind>& kinds() {
   static const std::vector<MeasurementKind> the_kinds{
-      {"position", {"line", "plane"}, read_position},
+      {"position", {"line", "plane", "space"}, read_position},
       {"position_velocity", {"line"}, read_position_velocity},
       {"range_bearing", {"plane"}, read_range_bearing},
       {"converted_range_bearing", {"plane"}, read_converted},
       {"range_bearing_rate", {"plane"}, read_range_bearing_rate},
       {"bearing", {"plane"}, read_bearing},
       {"bearing_frequency", {"plane_frequency", "plane"}, read_frequencies, true},
+      {"range_bearing_elevation", {"space"}, read_elevation},
+      {"converted_range_bearing_elevation", {"space"}, read_converted_elevation},
+      {"range_bearing_elevation_rate", {"space"}, read_elevation_rate},
+      {"converted_range_bearing_elevation_rate", {"space"}, read_converted_elevation_rate},
+      {"bearing_elevation", {"space"}, read_two_angles},
       {"lorenz", {"lorenz"}, read_lorenz},
   };
   return the_kinds;

@@ -22,13 +22,13 @@ struct MeasurementChoice {
   std::vector<double> gate_nis_of{};  ///< of each of several sensors, where they have gates of their own; else empty
 
   bool is_lorenz() const { return *space == lorenz_space(); }
-  int dimensions() const { return *space == line_space() ? 1 : 2; }  ///< d, of positions
+  int dimensions() const { return *space == line_space() ? 1 : *space == space_space() ? 3 : 2; }  ///< d, of positions
   /// Positions, velocities and what is measured with them: components that every state of these has.
   int leading() const { return 2 * dimensions() + (has_frequency ? 1 : 0); }
 };
 
-/// measurement = { model, bias, ... }, space = "line" | "plane" | "plane_frequency" | "lorenz". Standard deviations are multiplied by
-/// `factor`, as hypotheses of a bank have it. model = "sensors" reads { use, sensors.NAME = { model, bias,
+/// measurement = { model, bias, ... }, space = "line" | "plane" | "plane_frequency" | "space" | "lorenz". Standard
+/// deviations are multiplied by `factor`, as hypotheses of a bank have it. model = "sensors" reads { use, sensors.NAME = { model, bias,
 /// gate_probability, ... } }, of which a study fills in `sensors` from its own table of that name. Throws InputError.
 MeasurementChoice read_measurement(TableReader& tracker, double factor = 1.0);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
+#include <optional>
 #include <string>
 #include <toml++/toml.h>
 #include <variant>
@@ -20,6 +21,7 @@
 #include "truebearing/motion/singer.hpp"
 #include "truebearing/motion/turning_target.hpp"
 #include "truebearing/motion/with_frequency.hpp"
+#include "truebearing/motion/with_vertical.hpp"
 #include "truebearing/simulation/lorenz_scenario.hpp"
 #include "truebearing/study/learned_motion_spec.hpp"
 
@@ -31,7 +33,7 @@ constexpr Range kTurnRate_degps{-90.0, 90.0};
 // `model` with the frequency where the layout has it.
 template <typename Model>
 std::shared_ptr<const AnyMotion> laid_out(const Model& model, const MotionLayout& layout, std::string_view rest = {}) {
-  if constexpr (Model::kStates >= 4)
+  if constexpr (Model::kStates >= 4 && Model::kStates < kMaxDimension)
     if (layout.has_frequency) return erased(WithFrequency<Model>{model, layout.frequency_q_hz2ps}, rest);
   return erased(model, rest);
 }
@@ -49,8 +51,29 @@ AnyNoise<2 * D> read_noise(TableReader& motion, double factor) {
   return {noise};
 }
 
+// vertical = { noise, ... }: of the vertical channel of a target in space.
+AnyNoise<2> read_vertical(TableReader& motion, double factor) {
+  TableReader vertical = motion.table("vertical");
+  const AnyNoise<2> noise = read_noise<1>(vertical, factor);
+  vertical.finish();
+  return noise;
+}
+
+// `horizontal` with a vertical channel of that noise above it.
+template <typename Horizontal>
+std::shared_ptr<const AnyMotion> above(const Horizontal& horizontal, const AnyNoise<2>& noise,
+                                       std::string_view rest = {}) {
+  using Vertical = ConstantVelocity<1, AnyNoise<2>>;
+  return erased(WithVertical<Horizontal, Vertical>{horizontal, Vertical{noise}}, rest);
+}
+
 template <int D>
 std::shared_ptr<const AnyMotion> constant_velocity(TableReader& motion, const MotionLayout& layout) {
+  if (D == 3 && motion.has("vertical")) {
+    const double factor = layout.process_noise_factor;
+    const ConstantVelocity<2, AnyNoise<4>> level{read_noise<2>(motion, factor)};
+    return above(level, read_vertical(motion, factor));
+  }
   return laid_out(ConstantVelocity<D, AnyNoise<2 * D>>{read_noise<D>(motion, layout.process_noise_factor)}, layout);
 }
 
@@ -76,20 +99,35 @@ std::shared_ptr<const AnyMotion> singer(TableReader& motion, const MotionLayout&
   return laid_out(Singer<D>{sigma, motion.number("time_constant_s", kPositive)}, layout, "accelerations");
 }
 
-std::shared_ptr<const AnyMotion> coordinated_turn(const AnyNoise<4>& noise, double rate_degps,
+// The noises of turns, which are level: in space the vertical channel has one of its own.
+struct TurnNoise {
+  AnyNoise<4> level;
+  std::optional<AnyNoise<2>> vertical;
+};
+
+TurnNoise read_turn_noise(TableReader& motion, const MotionLayout& layout) {
+  TurnNoise noise{read_noise<2>(motion, layout.process_noise_factor), std::nullopt};
+  if (layout.dimensions == 3) noise.vertical = read_vertical(motion, layout.process_noise_factor);
+  return noise;
+}
+
+std::shared_ptr<const AnyMotion> coordinated_turn(const TurnNoise& noise, double rate_degps,
                                                   const MotionLayout& layout) {
-  return laid_out(CoordinatedTurn<AnyNoise<4>>{noise, radians(rate_degps)}, layout);
+  const CoordinatedTurn<AnyNoise<4>> turn{noise.level, radians(rate_degps)};
+  return noise.vertical ? above(turn, *noise.vertical) : laid_out(turn, layout);
 }
 
 std::shared_ptr<const AnyMotion> coordinated_turn(TableReader& motion, const MotionLayout& layout) {
   const double rate_degps = motion.number("turn_rate_degps", kTurnRate_degps);
-  return coordinated_turn(read_noise<2>(motion, layout.process_noise_factor), rate_degps, layout);
+  return coordinated_turn(read_turn_noise(motion, layout), rate_degps, layout);
 }
 
 std::shared_ptr<const AnyMotion> turning_target(TableReader& motion, const MotionLayout& layout) {
   const double factor = layout.process_noise_factor;
   const double wander = radians(motion.number("turn_rate_noise_degps2", kNonNegative) * std::sqrt(factor));
-  return laid_out(TurningTarget<AnyNoise<4>>{read_noise<2>(motion, factor), wander}, layout, "turn rate");
+  const TurnNoise noise = read_turn_noise(motion, layout);
+  const TurningTarget<AnyNoise<4>> turning{noise.level, wander};
+  return noise.vertical ? above(turning, *noise.vertical, "turn rate") : laid_out(turning, layout, "turn rate");
 }
 
 std::shared_ptr<const AnyMotion> lorenz_attractor(TableReader& motion, const MotionLayout& layout) {
@@ -124,23 +162,25 @@ struct MotionKind {
   const char* model;
   Read on_line;                 ///< nullptr where there is none
   Read in_plane;                ///< with a frequency or without; nullptr where there is none
+  Read in_space = nullptr;      ///< nullptr where there is none
   Read on_attractor = nullptr;  ///< of Lorenz; nullptr where there is none
 
   Read in(const MotionLayout& layout) const {
-    return layout.is_lorenz ? on_attractor : layout.dimensions == 1 ? on_line : in_plane;
+    if (layout.is_lorenz) return on_attractor;
+    return layout.dimensions == 1 ? on_line : layout.dimensions == 2 ? in_plane : in_space;
   }
 };
 
 constexpr MotionKind kKinds[] = {
-    {"constant_velocity", constant_velocity<1>, constant_velocity<2>},
-    {"coordinated_turn", nullptr, coordinated_turn},
-    {"constant_acceleration", constant_acceleration<1>, constant_acceleration<2>},
+    {"constant_velocity", constant_velocity<1>, constant_velocity<2>, constant_velocity<3>},
+    {"coordinated_turn", nullptr, coordinated_turn, coordinated_turn},
+    {"constant_acceleration", constant_acceleration<1>, constant_acceleration<2>, constant_acceleration<3>},
     {"constant_jerk", constant_jerk, nullptr},  // eight states in the plane, more than are compiled
-    {"singer", singer<1>, singer<2>},
-    {"turning_target", nullptr, turning_target},
-    {"lorenz_taylor", nullptr, nullptr, lorenz_attractor},
-    {"lorenz_rk4", nullptr, nullptr, lorenz_attractor},
-    {"learned", learned, learned, learned},
+    {"singer", singer<1>, singer<2>, singer<3>},
+    {"turning_target", nullptr, turning_target, turning_target},
+    {"lorenz_taylor", nullptr, nullptr, nullptr, lorenz_attractor},
+    {"lorenz_rk4", nullptr, nullptr, nullptr, lorenz_attractor},
+    {"learned", learned, learned, learned, learned},
 };
 
 // One table of `modes` is one mode, or with turn_rates_degps one for each rate.
@@ -153,7 +193,7 @@ void read_mode(TableReader& mode, const MotionLayout& layout, std::vector<ModeCh
     return;
   }
   mode.choice("model", {"coordinated_turn"});
-  const AnyNoise<4> noise = read_noise<2>(mode, layout.process_noise_factor);
+  const TurnNoise noise = read_turn_noise(mode, layout);
   for (const double rate_degps : mode.numbers("turn_rates_degps", -1, kTurnRate_degps))
     modes.push_back({coordinated_turn(noise, rate_degps, layout), sigma_factor});
   mode.finish();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one table from names of motions in study files to motion models, on the line, in the plane, and with the
+// The one table from names of motions in study files to motion models, on the line, in the plane, in space, and with the
 // frequency of a source behind the velocities.
 #pragma once
 
@@ -14,7 +14,7 @@ namespace truebearing {
 
 /// What the state of a motion is to have.
 struct MotionLayout {
-  int dimensions = 1;                 ///< 1 or 2
+  int dimensions = 1;                 ///< 1, 2 or 3
   bool has_frequency = false;         ///< of a source, behind the velocities; in the plane only
   double frequency_q_hz2ps = 0.0;     ///< its random walk
   double process_noise_factor = 1.0;  ///< of the motion's process noise covariance, as hypotheses of a bank have it

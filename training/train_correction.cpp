@@ -30,7 +30,7 @@ FuzzyTrainingData training_data(const TeacherSet& teacher, const CorrectionSpec&
   if (spec.training.mirror == TrainingSpec::Mirror::none) return data;
   for (const FeatureSpec& feature : teacher.features)
     data.parity.push_back(mirror_parity(feature, spec.design.frame, space));
-  for (int i = 0; i < space.size(); ++i) data.output_parity.push_back(component_parity(spec.design.frame, i));
+  for (int i = 0; i < space.size(); ++i) data.output_parity.push_back(component_parity(spec.design.frame, space, i));
   data.paired_rules = spec.training.mirror == TrainingSpec::Mirror::pairs;
   return data;
 }
@@ -152,7 +152,7 @@ std::string provenance_of(const ChangedScenario& changed) {
 }
 
 // The covariance head of rules, from rows of what the correction will meet.
-void fit_covariance(const TeacherSet& met, const CorrectionSpec& spec, RuleBase& rules) {
+void fit_covariance(const TeacherSet& met, const CorrectionSpec& spec, const StateSpace& space, RuleBase& rules) {
   const Eigen::Index n = met.Y.cols();
   rules.inflation = Eigen::VectorXd::Ones(rules.network.rules());  // until it is known
   const Eigen::MatrixXd errors = met.Y - outputs(met, rules);
@@ -164,7 +164,8 @@ void fit_covariance(const TeacherSet& met, const CorrectionSpec& spec, RuleBase&
   rules.inflation.resize(0);
   std::vector<int> output_parity;
   if (spec.training.mirror == TrainingSpec::Mirror::pairs)
-    for (int i = 0; i < static_cast<int>(n); ++i) output_parity.push_back(component_parity(spec.design.frame, i));
+    for (int i = 0; i < static_cast<int>(n); ++i)
+      output_parity.push_back(component_parity(spec.design.frame, space, i));
   rules.moments = covariance_moments(rules.network, met.X, in_sigmas(errors, met.covariance_factors), output_parity);
 }
 
@@ -186,7 +187,7 @@ Network train_rules(const Lessons& lessons, const CorrectionSpec& spec, const Tr
   rules.network = FuzzyNetwork(std::move(trained.parameters));
   rules.usage = trained.usage;
   rules.local_mean = trained.local_mean;
-  fit_covariance(lessons.met, spec, rules);
+  fit_covariance(lessons.met, spec, lessons.space, rules);
   return rules;
 }
 

@@ -52,7 +52,7 @@ int mirror_parity(const FeatureSpec& feature, Frame frame, const StateSpace& spa
     case FeatureMirror::by_component:
       break;
   }
-  return component_parity(frame, std::max(space_in(frame, space).component_index(feature.component), 0));
+  return component_parity(frame, space, std::max(space_in(frame, space).component_index(feature.component), 0));
 }
 
 std::string describe(const FeatureSpec& feature) {

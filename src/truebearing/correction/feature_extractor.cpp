@@ -31,8 +31,10 @@ void check(const FeatureSpec& feature, const StateSpace& space, const StateSpace
     throw InputError(where, fmt::format("component \"{}\" is no velocity", feature.component),
                      suggestion(feature.component,
                                 {components.components.begin() + components.size() / 2, components.components.end()}));
-  if (needs.plane && space != plane_space())
-    throw InputError(where, "has no meaning in the space " + space.name, "the space plane");
+  if (needs.plane && space != plane_space() && space != space_space())
+    throw InputError(where, "has no meaning in the space " + space.name, "the space plane or space");
+  if (needs.plane && named && feature.component == "up_mps")
+    throw InputError(where, "is of the level velocity, and its component is \"up_mps\"", "along or across");
   if (needs.mode && (feature.mode < 1 || feature.mode > kMaxModes))
     throw InputError(where, fmt::format("mode is {}", feature.mode), fmt::format("1 to {}", kMaxModes));
   if (needs.sensor && feature.sensor < 1)
@@ -61,16 +63,18 @@ void check(const FeatureSpec& feature, const StateSpace& space, const StateSpace
 
 // e of an innovation: each component over its own standard deviation. In a frame that turns with the target it must not
 // matter which way the axes of the plane point, so that there e = S^-1/2 nu with the symmetric root, which turns as nu
-// does; where the components are not correlated the two are the same.
+// does; where the components are not correlated the two are the same. Up, which does not turn, is by itself.
 BoundedVector normalised(const Innovation& innovation, Frame frame) {
   const BoundedMatrix& S = innovation.S;
-  if (frame == Frame::state || S.rows() != 2 || S(0, 1) == 0.0)
-    return innovation.nu.cwiseQuotient(S.diagonal().cwiseSqrt());
+  BoundedVector e = innovation.nu.cwiseQuotient(S.diagonal().cwiseSqrt());
+  if (frame == Frame::state || S.rows() < 2 || S.rows() > 3 || S(0, 1) == 0.0) return e;
   // S^1/2 = (S + s I) / t with s = sqrt(det S), t = sqrt(tr S + 2 s).
-  const double s = std::sqrt(std::max(S(0, 0) * S(1, 1) - S(0, 1) * S(1, 0), 0.0)), t = std::sqrt(S.trace() + 2.0 * s);
+  const double s = std::sqrt(std::max(S(0, 0) * S(1, 1) - S(0, 1) * S(1, 0), 0.0));
+  const double t = std::sqrt(S(0, 0) + S(1, 1) + 2.0 * s);
   const double a = S(0, 0) + s, b = S(0, 1), c = S(1, 1) + s, scale = t / (a * c - b * b);
-  return scale *
-         Eigen::Vector2d(c * innovation.nu[0] - b * innovation.nu[1], a * innovation.nu[1] - b * innovation.nu[0]);
+  e.head<2>() << scale * (c * innovation.nu[0] - b * innovation.nu[1]),
+      scale * (a * innovation.nu[1] - b * innovation.nu[0]);
+  return e;
 }
 
 constexpr double kLeastRange_m = 1.0;
@@ -176,7 +180,7 @@ void FeatureExtractor::remember(Term& term, const StepRecord& record) const {
       break;
     }
     case FeatureKind::frame_turn: {  // the velocities at the last two
-      const Eigen::Vector2d now = record.x.tail<2>();
+      const Eigen::Vector2d now = level_velocity(record.x);
       const Eigen::Vector2d before = memory.size() == 4 ? Eigen::Vector2d(memory.head<2>()) : now;
       memory.resize(4);
       memory << now, before;
@@ -184,7 +188,7 @@ void FeatureExtractor::remember(Term& term, const StepRecord& record) const {
     }
     case FeatureKind::speed_change:
     case FeatureKind::velocity_change: {
-      BoundedVector now = record.x.tail<2>();
+      BoundedVector now = level_velocity(record.x);
       if (term.kind != FeatureKind::velocity_change) now = BoundedVector::Constant(1, now.norm());
       const bool told = record.mode_probabilities && term.mode < record.mode_probabilities->size();
       const double stays = told ? (*record.mode_probabilities)[term.mode] : 0.0;
@@ -251,11 +255,11 @@ double FeatureExtractor::value(const Term& term, const StepRecord& base, const S
     case FeatureKind::log_sigma:
       return std::log(companion ? std::sqrt(rotation_.covariance(record.P)(c, c)) : sigma_[c]);
     case FeatureKind::log_speed:
-      return std::log(std::max(record.x.tail<2>().norm(), kLeastSpeed_mps));
+      return std::log(std::max(level_velocity(record.x).norm(), kLeastSpeed_mps));
     case FeatureKind::aspect_cosine:
     case FeatureKind::aspect_sine: {
       const Eigen::Vector2d sight = base.x.head<2>() - own.position_m;
-      const Eigen::Vector2d v = base.x.tail<2>();
+      const Eigen::Vector2d v = level_velocity(base.x);
       const double size = sight.norm() * v.norm();
       if (!(size > 0.0)) return 0.0;
       const double cross = v.x() * sight.y() - v.y() * sight.x();
@@ -271,17 +275,19 @@ double FeatureExtractor::value(const Term& term, const StepRecord& base, const S
     case FeatureKind::log_time:
       return std::log(std::max(base.time_s - began_s_, kLeastTime_s));
     case FeatureKind::bearing_rate: {
-      const Eigen::Vector2d d = record.x.head<2>() - own.position_m, v = record.x.tail<2>() - own.velocity_mps;
+      const Eigen::Vector2d d = record.x.head<2>() - own.position_m, v = level_velocity(record.x) - own.velocity_mps;
       return (v.x() * d.y() - v.y() * d.x()) / std::max(d.squaredNorm(), kLeastRange_m * kLeastRange_m);
     }
     case FeatureKind::own_velocity:
-      return rotation_.component(own.velocity_mps, c % 2) / term.scale;
+      return rotation_.component(own.velocity_mps, c % (base.x.size() / 2)) / term.scale;
     case FeatureKind::speed_change:
       if (term.used == 0.0) return 0.0;
-      return std::log(std::max(record.x.tail<2>().norm(), kLeastSpeed_mps) / std::max(term.memory[0], kLeastSpeed_mps));
+      return std::log(std::max(level_velocity(record.x).norm(), kLeastSpeed_mps) /
+                      std::max(term.memory[0], kLeastSpeed_mps));
     case FeatureKind::velocity_change:
       if (term.used == 0.0) return 0.0;
-      return rotation_.component(BoundedVector(record.x.tail<2>() - term.memory), c % 2) / term.scale;
+      return rotation_.component(BoundedVector(level_velocity(record.x) - term.memory), c % (base.x.size() / 2)) /
+             term.scale;
     case FeatureKind::neighbour_closeness:
       return base.neighbour ? base.neighbour->closeness : 0.0;
     case FeatureKind::neighbour_difference:
@@ -296,7 +302,7 @@ double FeatureExtractor::value(const Term& term, const StepRecord& base, const S
     case FeatureKind::frame_turn: {
       if (term.memory.size() != 4) return 0.0;
       const bool uses = base.status == StepStatus::ok && base.innovation;
-      const Eigen::Vector2d now = base.x.tail<2>(), then = uses ? term.memory.tail<2>() : term.memory.head<2>();
+      const Eigen::Vector2d now = level_velocity(base.x), then = uses ? term.memory.tail<2>() : term.memory.head<2>();
       return std::atan2(now.x() * then.y() - now.y() * then.x(), now.dot(then));
     }
   }

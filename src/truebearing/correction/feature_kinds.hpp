@@ -9,6 +9,7 @@
 
 namespace truebearing {
 
+// What is said to be of the plane is in space of the level part: range, speed and direction along the ground.
 enum class FeatureKind {
   log_step,  ///< ln k, k the number of steps of this track in which the base used its measurement, 1 before the first
   gain,      ///< the gain of a component on the measured component that it belongs to: K[component, 0] on a line

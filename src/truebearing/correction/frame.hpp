@@ -2,7 +2,8 @@
 // The frame that a correction works in. Where a target flies to does not matter to how a filter lags behind it: in the
 // track frame errors and innovations are along and across the base's estimated velocity, so that what was learnt on one
 // course holds on all of them. To a sensor of bearings it matters how a target is seen: in the sight frame they are
-// along and across the line from the sensor to the base's estimate.
+// along and across the line from the sensor to the base's estimate. In space both turn about the vertical alone: along and
+// across are level, and up stays up.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,7 +20,7 @@ namespace truebearing {
 
 enum class Frame {
   state,  ///< the state's own components
-  track,  ///< plane space only: [along_m, cross_m, along_mps, cross_mps], cross to starboard
+  track,  ///< of the plane: [along_m, cross_m, along_mps, cross_mps], cross to starboard; of space, up behind either two
   sight   ///< the same along the line of sight, cross clockwise; the axes do not turn with the sight
 };
 
@@ -29,8 +30,11 @@ const StateSpace& space_in(Frame frame, const StateSpace& space);
 /// +1 where the component of a state stays as it is for a mirrored target, -1 where it changes sign. In the track frame
 /// the mirror stands along the track, in the sight frame along the line of sight; in the state's own every component
 /// changes sign.
-inline int component_parity(Frame frame, int component) {
-  return frame != Frame::state && component % 2 == 0 ? +1 : -1;
+int component_parity(Frame frame, const StateSpace& space, int component);
+
+/// The velocity in the plane of a state of the plane (4) or of space (6).
+inline Eigen::Vector2d level_velocity(const BoundedVector& x) {
+  return x.segment<2>(x.size() / 2);
 }
 
 /// The rotation into a frame, for one estimate.
@@ -42,7 +46,7 @@ class FrameRotation {
   FrameRotation(Frame frame, const BoundedVector& x, const std::optional<SensorState>& sensor = {})
       : rotates_(frame != Frame::state) {
     if (!rotates_) return;
-    Eigen::Vector2d direction = frame == Frame::track ? x.tail<2>() : x.head<2>();
+    Eigen::Vector2d direction = frame == Frame::track ? level_velocity(x) : x.head<2>();
     if (frame == Frame::sight && sensor) direction -= sensor->position_m;
     const double length = direction.stableNorm();
     along_ = length > 0.0 ? Eigen::Vector2d(direction / length) : Eigen::Vector2d(0.0, 1.0);
@@ -53,36 +57,37 @@ class FrameRotation {
   BoundedVector vector(const Eigen::MatrixBase<Derived>& x) const {
     BoundedVector turned = x;
     if (rotates_)
-      for (Eigen::Index i = 0; i < turned.size(); i += 2) turned.segment<2>(i) = turn(turned.segment<2>(i));
+      for (Eigen::Index i = 0, d = dimensions(x.size()); i < turned.size(); i += d)
+        turned.segment<2>(i) = turn(turned.segment<2>(i));
     return turned;
   }
   /// One component of vector(x).
   template <typename Derived>
   double component(const Eigen::MatrixBase<Derived>& x, Eigen::Index i) const {
-    if (!rotates_) return x[i];
-    const Eigen::Index first = i - i % 2;
-    return i == first ? along_.x() * x[first] + along_.y() * x[first + 1]
+    const Eigen::Index place = i % dimensions(x.size()), first = i - place;
+    if (!rotates_ || place == 2) return x[i];
+    return place == 0 ? along_.x() * x[first] + along_.y() * x[first + 1]
                       : along_.y() * x[first] - along_.x() * x[first + 1];
   }
   /// A covariance of states in the frame, and back.
   BoundedMatrix covariance(const BoundedMatrix& P) const {
     if (!rotates_) return P;
-    BoundedMatrix turned(P.rows(), P.cols());
-    for (Eigen::Index j = 0; j < P.cols(); j += 2)
-      for (Eigen::Index i = 0; i < P.rows(); i += 2) {
-        const Eigen::Vector2d a = turn({P(i, j), P(i + 1, j)}), b = turn({P(i, j + 1), P(i + 1, j + 1)});
-        const Eigen::Vector2d top = turn({a[0], b[0]}), bottom = turn({a[1], b[1]});
-        turned(i, j) = top[0];
-        turned(i, j + 1) = top[1];
-        turned(i + 1, j) = bottom[0];
-        turned(i + 1, j + 1) = bottom[1];
-      }
+    BoundedMatrix turned = P;
+    const Eigen::Index n = P.rows(), d = dimensions(n);
+    for (Eigen::Index j = 0; j < n; ++j)
+      for (Eigen::Index i = 0; i < n; i += d) turned.col(j).segment<2>(i) = turn(turned.col(j).segment<2>(i));
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (Eigen::Index j = 0; j < n; j += d)
+        turned.row(i).segment<2>(j) = turn(turned.row(i).segment<2>(j).transpose()).transpose();
     return turned;
   }
   bool rotates() const { return rotates_; }
   const Eigen::Vector2d& along() const { return along_; }
 
  private:
+  // Of a vector of the plane (2 or 4 components) or of space (3 or 6).
+  static Eigen::Index dimensions(Eigen::Index size) { return size % 3 == 0 ? 3 : 2; }
+
   // [u'; s'] with u along and s = (u_y, -u_x) to starboard: symmetric and its own inverse.
   Eigen::Vector2d turn(const Eigen::Vector2d& p) const {
     return {along_.x() * p.x() + along_.y() * p.y(), along_.y() * p.x() - along_.x() * p.y()};

@@ -46,4 +46,7 @@ struct PlanarFlight {
   bool operator==(const PlanarFlight&) const = default;
 };
 
+/// Reads the table [flight] of a scenario.
+PlanarFlight read_planar_flight(TableReader flight);
+
 }  // namespace truebearing

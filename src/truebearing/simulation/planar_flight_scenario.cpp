@@ -231,39 +231,6 @@ PlanarSource read_source(const std::string& name, TableReader table) {
   return source;
 }
 
-PlanarFlight read_flight(TableReader flight) {
-  // Shorter than this, a leg or a turn is none, and the programme of a flight would not end.
-  constexpr Range kDuration{0.1, 1e6};
-
-  PlanarFlight parameters;
-  parameters.speed_mps = read_distribution(flight, "speed_mps", kPositive);
-  if (flight.has("intervals")) {
-    FlightIntervals& intervals = parameters.intervals.emplace();
-    intervals.count = read_distribution(flight, "intervals", {1.0, 1e4});
-    intervals.interval_s = read_distribution(flight, "interval_s", kDuration);
-    intervals.along_mps2 = read_distribution(flight, "along_mps2");
-    intervals.across_mps2 = read_distribution(flight, "across_mps2");
-    intervals.hold_s = flight.number_or("hold_s", 1.0, kDuration);
-    flight.finish();
-    return parameters;
-  }
-  if (flight.has("first_leg_s")) parameters.first_leg_s = read_distribution(flight, "first_leg_s", kNonNegative);
-  parameters.leg_s = read_distribution(flight, "leg_s", kDuration);
-  parameters.turn_s = read_distribution(flight, "turn_s", kDuration);
-  parameters.turn_rate_degps = read_distribution(flight, "turn_rate_degps", kNonNegative);
-  parameters.roll_in_s = read_distribution(flight, "roll_in_s", kNonNegative);
-  parameters.acceleration_share = flight.number_or("acceleration_share", 0.0, {0.0, 1.0});
-  if (parameters.acceleration_share > 0.0) {
-    parameters.acceleration_s = read_distribution(flight, "acceleration_s", kDuration);
-    parameters.acceleration_mps2 = read_distribution(flight, "acceleration_mps2", kNonNegative);
-    parameters.lowest_speed_mps = flight.number_or("lowest_speed_mps", 0.0, kNonNegative);
-    parameters.highest_speed_mps = flight.number_or("highest_speed_mps", 1e9, kPositive);
-  }
-  parameters.quiet_share = flight.number_or("quiet_share", 0.0, {0.0, 1.0});
-  flight.finish();
-  return parameters;
-}
-
 Site read_site(std::optional<TableReader> site, int steps) {
   if (!site) return SiteAtStart{};
   if (site->has("start_east_m")) {
@@ -306,7 +273,7 @@ std::unique_ptr<Scenario> read_planar_flight_scenario(TableReader& table) {
   parameters.period_s = table.number("period_s", {0.0, 3600.0, true});
   parameters.steps = static_cast<int>(table.integer("steps", 1, 100'000));
   if (table.has("quiet_after_s")) parameters.quiet_after_s = table.number("quiet_after_s", kNonNegative);
-  parameters.flight = read_flight(table.table("flight"));
+  parameters.flight = read_planar_flight(table.table("flight"));
   parameters.site = read_site(table.table_if_present("site"), parameters.steps);
   if (std::optional<TableReader> jitter = table.table_if_present("jitter")) parameters.jitter = read_jitter(*jitter);
   if (sources) {

@@ -12,6 +12,7 @@
 #include "truebearing/simulation/lorenz_scenario.hpp"
 #include "truebearing/simulation/planar_flight_scenario.hpp"
 #include "truebearing/simulation/planar_legs_scenario.hpp"
+#include "truebearing/simulation/space_flight_scenario.hpp"
 
 namespace truebearing {
 namespace {
@@ -23,6 +24,7 @@ struct ScenarioKind {
 constexpr std::array kKinds{ScenarioKind{"line", read_line_scenario},
                             ScenarioKind{"planar_flight", read_planar_flight_scenario},
                             ScenarioKind{"planar_legs", read_planar_legs_scenario},
+                            ScenarioKind{"space_flight", read_space_flight_scenario},
                             ScenarioKind{"bearings_only", read_bearings_only_scenario},
                             ScenarioKind{"passive_sonar", read_passive_sonar_scenario},
                             ScenarioKind{"line_array", read_line_array_scenario},

@@ -39,7 +39,7 @@ class Scenario {
 };
 
 /// Reads a scenario table; its key `kind` names which: "line", "planar_flight", "planar_legs",
-/// "bearings_only", "passive_sonar", "line_array" or "lorenz". Throws InputError.
+/// "space_flight", "bearings_only", "passive_sonar", "line_array" or "lorenz". Throws InputError.
 /// `more` holds the kinds that a room further on adds, by name.
 using ScenarioReader = std::function<std::unique_ptr<Scenario>(TableReader&)>;
 using ScenarioKinds = std::map<std::string, ScenarioReader>;

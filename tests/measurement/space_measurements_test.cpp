@@ -46,8 +46,8 @@ TEST(SpaceMeasurements, HaveTheJacobiansOfCentralDifferences) {
   expect_jacobian_of_central_differences(kPolar, 41);
   expect_jacobian_of_central_differences(kDoppler, 42);
   expect_jacobian_of_central_differences(kAngles, 43);
-  const Eigen::Vector3d u = Eigen::Vector3d(1.0, 2.0, 2.0) / 3.0;
-  expect_jacobian_of_central_differences(PositionAndRate<>{Eigen::Matrix3d::Identity(), u, 0.3, 1.0}, 44);
+  const State row{-0.1, -0.2, -0.2, 0.3, 0.6, 0.6};
+  expect_jacobian_of_central_differences(PositionAndRate<3>{Eigen::Matrix3d::Identity(), row, 0.3, 1.0}, 44);
 }
 
 TEST(SpaceMeasurements, AreWhatIsSeen) {

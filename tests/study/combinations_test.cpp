@@ -82,6 +82,16 @@ const std::vector<MeasurementCase> kMeasurements{
     {"bearing", R"({ model = "bearing", bearing_sigma_deg = 0.2 })", "plane", 2, true, false},
     {"bearing_frequency", R"({ model = "bearing_frequency", bearing_sigma_deg = 0.2, frequency_sigma_hz = 0.05 })",
      "plane_frequency", 2, true, true},
+    {"correlated_rate",
+     R"({ model = "range_bearing_rate", range_sigma_m = 10.0, bearing_sigma_deg = 0.1, range_rate_sigma_mps = 0.5, range_rate_correlation = 0.7 })",
+     "plane", 2, false, false},
+    {"converted_rate",
+     R"({ model = "converted_range_bearing_rate", range_sigma_m = 10.0, bearing_sigma_deg = 0.1, range_rate_sigma_mps = 0.5, range_rate_correlation = 0.7 })",
+     "plane", 2, false, false},
+    {"range_range_rate",
+     R"({ model = "range_range_rate", range_sigma_m = 10.0, range_rate_sigma_mps = 0.5, range_rate_correlation = 0.7 })",
+     "plane", 2, false, false},
+    {"range_rate", R"({ model = "range_rate", range_rate_sigma_mps = 0.5 })", "plane", 2, false, false},
     {"position_space", R"({ model = "position", sigma_m = 10.0 })", "space", 3, false, false},
     {"range_bearing_elevation",
      R"({ model = "range_bearing_elevation", range_sigma_m = 10.0, bearing_sigma_deg = 0.1, elevation_sigma_deg = 0.1 })",
@@ -258,7 +268,16 @@ Measurement measure(const MeasurementCase& c, const Eigen::VectorXd& x, int k, d
   const Eigen::Vector2d offset = x.head<2>() - m.sensor->position_m;
   const double range = offset.norm(), bearing = std::atan2(offset.x(), offset.y());
   const double radial_mps = (x.segment<2>(2) - m.sensor->velocity_mps).dot(offset) / range;
-  if (c.name == "range_bearing_rate") {
+  if (c.name.starts_with("range_r") || c.name.ends_with("d_rate")) {  // range rates whose errors go with the range's
+    const double e = random.normal(), f = random.normal(), range_error_m = noise * 10.0 * e;
+    const double rate = radial_mps + noise * 0.5 * (0.7 * e + std::sqrt(1.0 - 0.49) * f);
+    if (c.name == "range_rate")
+      m.z = BoundedVector::Constant(1, rate);
+    else if (c.name == "range_range_rate")
+      m.z = Eigen::Vector2d(range + range_error_m, rate);
+    else
+      m.z = Eigen::Vector3d(range + range_error_m, bearing + noise * radians(0.1) * random.normal(), rate);
+  } else if (c.name == "range_bearing_rate") {
     m.z = Eigen::Vector3d(range + noise * 10.0 * random.normal(), bearing + noise * radians(0.1) * random.normal(),
                           radial_mps + noise * 0.5 * random.normal());
   } else if (c.name == "position") {

@@ -56,7 +56,8 @@ struct Measured {
 std::string describe(const Measured& measured);
 
 /// Why a tracker that takes `taken` cannot use what `giver` ("the scenario") gives, in words that follow the tracker's
-/// name; nothing where it can. A bearing may come with a frequency, which is left alone. What a step log measured
+/// name; nothing where it can. A bearing may come with a frequency, and a range with its
+/// angles with a range rate, which are left alone. What a step log measured
 /// is taken for what is wanted.
 std::optional<std::string> mismatch(const Measured& taken, const Measured& given, const std::string& giver);
 

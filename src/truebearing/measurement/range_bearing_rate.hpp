@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Range, bearing and range rate from a site that may move to a state [east, north, v_east, v_north] in m and m/s:
 // z = [range_m, bearing_rad, range_rate_mps] (m = 3, n = 4), bearings clockwise from North,
-//     range rate = u . (v - v_site),  u = [sin bearing, cos bearing],     R = diag(sigma^2)
-// Bar-Shalom, Li and Kirubarajan 2001, section 10.4.3.
+//     range rate = u . (v - v_site),  u = [sin bearing, cos bearing]
+// Bar-Shalom, Li and Kirubarajan 2001, section 10.4.3. R = diag(sigma^2) but for the correlation of range and range rate that
+// a chirp couples.
 #pragma once
 
 #include <Eigen/Core>
@@ -30,6 +31,7 @@ struct RangeBearingRate {
   Scalar sigma_range_m;
   Scalar sigma_bearing_rad;
   Scalar sigma_rate_mps;
+  Scalar correlation = 0;  ///< of range and range rate, in (-1, 1)
 
   /// The bearing in [-pi, pi]. At the site itself the range rate is zero.
   Vector h(const State& x) const {
@@ -51,7 +53,11 @@ struct RangeBearingRate {
     return jacobian;
   }
 
-  Covariance R() const { return Vector(sigma_range_m, sigma_bearing_rad, sigma_rate_mps).cwiseAbs2().asDiagonal(); }
+  Covariance R() const {
+    Covariance covariance = Vector(sigma_range_m, sigma_bearing_rad, sigma_rate_mps).cwiseAbs2().asDiagonal();
+    covariance(0, 2) = covariance(2, 0) = correlation * sigma_range_m * sigma_rate_mps;
+    return covariance;
+  }
 
   /// The bearing's component in [-pi, pi].
   Vector residual(const Vector& z, const Vector& z_pred) const {

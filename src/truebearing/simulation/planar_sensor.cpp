@@ -6,7 +6,7 @@
 
 #include "truebearing/core/angle.hpp"
 #include "truebearing/core/linear_algebra.hpp"
-#include "truebearing/measurement/range_bearing_rate.hpp"
+#include "truebearing/measurement/range_rate.hpp"
 
 namespace truebearing {
 
@@ -14,6 +14,10 @@ namespace {
 
 double bearing_of(const Eigen::Vector4d& state) {
   return std::atan2(state.x(), state.y());
+}
+
+double range_rate_of(const Eigen::Vector4d& state) {
+  return state.tail<2>().dot(state.head<2>().stableNormalized());
 }
 
 const std::vector<PlanarOutput>& table() {
@@ -36,11 +40,20 @@ const std::vector<PlanarOutput>& table() {
       {"range_bearing_rate",
        RangeBearingRate<>::measured(),
        [](const Eigen::Vector4d& state) -> BoundedVector {
-         const Eigen::Vector2d position = state.head<2>();
-         return Eigen::Vector3d(position.norm(), bearing_of(state), state.tail<2>().dot(position.stableNormalized()));
+         return Eigen::Vector3d(state.head<2>().norm(), bearing_of(state), range_rate_of(state));
        },
        {"bearing_sigma_deg", "range_rate_sigma_mps"},
        1},
+      {"range_range_rate",
+       RangeAndRate::measured(),
+       [](const Eigen::Vector4d& state) -> BoundedVector {
+         return Eigen::Vector2d(state.head<2>().norm(), range_rate_of(state));
+       },
+       {"range_rate_sigma_mps"}},
+      {"range_rate",
+       RangeRate::measured(),
+       [](const Eigen::Vector4d& state) -> BoundedVector { return BoundedVector::Constant(1, range_rate_of(state)); },
+       {"range_rate_sigma_mps"}},
   };
   return the_table;
 }
@@ -79,6 +92,8 @@ Measurement PlanarSensor::measure(double time_s, const Eigen::Vector4d& state, d
   sigma.tail(further_sigma.size()) = further_sigma;
   BoundedVector noise(sigma.size());
   for (double& value : noise) value = stream.normal();
+  if (const double rho = range_rate_correlation; rho != 0.0)
+    noise.tail<1>()[0] = rho * noise[0] + std::sqrt(1.0 - rho * rho) * noise.tail<1>()[0];
   if (R_m2) {
     Eigen::Matrix2d L;
     cholesky(*R_m2, L);
@@ -95,12 +110,14 @@ Measurement PlanarSensor::measure(double time_s, const Eigen::Vector4d& state, d
 }
 
 PlanarSensor read_planar_sensor(TableReader table, const std::string& output) {
+  constexpr double kNearlyOne = 0.999;
   PlanarSensor sensor;
   sensor.output = &planar_output(output);
   const std::vector<std::string>& further = sensor.output->sigma_keys;
   sensor.further_sigma.resize(static_cast<Eigen::Index>(further.size()));
   if (!further.empty()) {
-    sensor.sigma_m = read_distribution(table, "range_sigma_m", kPositive);
+    if (further.size() < sensor.output->measured.components.size())
+      sensor.sigma_m = read_distribution(table, "range_sigma_m", kPositive);
     for (std::size_t i = 0; i < further.size(); ++i)
       sensor.further_sigma[static_cast<Eigen::Index>(i)] = read_sigma(table, further[i]);
   } else if (output == "plane" && table.has("position_covariance_m2")) {
@@ -112,6 +129,9 @@ PlanarSensor read_planar_sensor(TableReader table, const std::string& output) {
   } else {
     sensor.sigma_m = read_distribution(table, "position_sigma_m", kPositive);
   }
+  if (further.size() < sensor.output->measured.components.size() && !further.empty() &&
+      further.back() == "range_rate_sigma_mps")
+    sensor.range_rate_correlation = table.number_or("range_rate_correlation", 0.0, {-kNearlyOne, kNearlyOne});
   sensor.outlier_share = table.number_or("outlier_share", 0.0, {0.0, 1.0});
   sensor.outlier_factor = table.number_or("outlier_factor", 1.0, kPositive);
   sensor.false_share = table.number_or("false_share", 0.0, {0.0, 1.0});

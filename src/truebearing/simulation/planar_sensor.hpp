@@ -34,6 +34,7 @@ struct PlanarSensor {
   Distribution sigma_m = 1.0;           ///< of the position per axis, or of the range; drawn once per run
   std::optional<Eigen::Matrix2d> R_m2;  ///< of the position, in place of sigma_m
   BoundedVector further_sigma;          ///< of the components behind those of sigma_m: rad, m/s
+  double range_rate_correlation = 0.0;  ///< of the errors of range and range rate, z's first and last
   double outlier_share = 0.0;           ///< probability that a measurement's noise is
   double outlier_factor = 1.0;          ///< that many times as large
   double false_share = 0.0;             ///< probability that a measurement is of nothing: of a place drawn evenly

@@ -20,7 +20,7 @@
 #include "truebearing/tracker/polar_sensor.hpp"
 #include "truebearing/tracker/position_sensor.hpp"
 #include "truebearing/tracker/position_velocity_sensor.hpp"
-#include "truebearing/tracker/range_bearing_rate_sensor.hpp"
+#include "truebearing/tracker/range_rate_sensor.hpp"
 #include "truebearing/tracker/several_sensors.hpp"
 #include "truebearing/tracker/space_sensor.hpp"
 
@@ -86,11 +86,42 @@ std::unique_ptr<AnySensor> read_converted(const Reading& reading) {
   return sensor_of(sensor);
 }
 
-std::unique_ptr<AnySensor> read_range_bearing_rate(const Reading& reading) {
+// Of range and range rate.
+double read_correlation(TableReader& table) {
+  constexpr double kNearlyOne = 0.999;
+  return table.number_or("range_rate_correlation", 0.0, {-kNearlyOne, kNearlyOne});
+}
+
+RangeBearingRateSensor read_polar_rate(const Reading& reading) {
   const PolarSensor polar = read_polar(reading);
   const double rate_sigma_mps = reading.table.number("range_rate_sigma_mps", kPositive);
-  return sensor_of(
-      RangeBearingRateSensor{{polar.sigma[0], polar.sigma[1], rate_sigma_mps}, polar.sigma_factor, polar.site_m});
+  return {{polar.sigma[0], polar.sigma[1], rate_sigma_mps},
+          polar.sigma_factor,
+          polar.site_m,
+          read_correlation(reading.table)};
+}
+
+std::unique_ptr<AnySensor> read_range_bearing_rate(const Reading& reading) {
+  return sensor_of(read_polar_rate(reading));
+}
+
+std::unique_ptr<AnySensor> read_converted_rate(const Reading& reading) {
+  return sensor_of(ConvertedRateSensor{read_polar_rate(reading)});
+}
+
+// A range rate, with the range before it or without.
+template <typename Model>
+std::unique_ptr<AnySensor> read_partial_rate(const Reading& reading) {
+  TableReader& table = reading.table;
+  PartialRangeRateSensor<Model> sensor;
+  sensor.sigma_factor = read_factor(reading);
+  sensor.sigma[0] = sensor.sigma[Model::kMeasurements - 1] = table.number("range_rate_sigma_mps", kPositive);
+  if constexpr (Model::kMeasurements == 2) {
+    sensor.sigma[0] = table.number("range_sigma_m", kPositive);
+    sensor.correlation = read_correlation(table);
+  }
+  if (table.has("site_m")) sensor.site_m = Eigen::Map<const Eigen::Vector2d>(table.numbers("site_m", 2).data());
+  return sensor_of(sensor);
 }
 
 std::unique_ptr<AnySensor> read_bearing(const Reading& reading) {
@@ -142,12 +173,6 @@ SpaceSite<M> read_space_site(const Reading& reading) {
   return site;
 }
 
-// Of range and range rate.
-double read_correlation(TableReader& table) {
-  constexpr double kNearlyOne = 0.999;
-  return table.number_or("range_rate_correlation", 0.0, {-kNearlyOne, kNearlyOne});
-}
-
 std::unique_ptr<AnySensor> read_elevation(const Reading& reading) {
   return sensor_of(RangeBearingElevationSensor{read_space_site<3>(reading)});
 }
@@ -182,6 +207,9 @@ const std::vector<MeasurementKind>& kinds() {
       {"range_bearing", {"plane"}, read_range_bearing},
       {"converted_range_bearing", {"plane"}, read_converted},
       {"range_bearing_rate", {"plane"}, read_range_bearing_rate},
+      {"converted_range_bearing_rate", {"plane"}, read_converted_rate},
+      {"range_range_rate", {"plane"}, read_partial_rate<RangeAndRate>},
+      {"range_rate", {"plane"}, read_partial_rate<RangeRate>},
       {"bearing", {"plane"}, read_bearing},
       {"bearing_frequency", {"plane_frequency", "plane"}, read_frequencies, true},
       {"range_bearing_elevation", {"space"}, read_elevation},

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sensors of range and bearing, z = [range_m, bearing_rad], of a target in the plane [east, north, v_east, v_north]
-// (any_sensor.hpp). The measurement's own standard deviations hold where it carries them, else the sensor's; either is
-// multiplied by sigma_factor.
+// (any_sensor.hpp). A range rate behind the two is left alone. The measurement's own standard deviations hold where it
+// carries them, else the sensor's; either is multiplied by sigma_factor.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,6 +11,7 @@
 #include "truebearing/measurement/measured.hpp"
 #include "truebearing/measurement/measurement.hpp"
 #include "truebearing/measurement/range_bearing.hpp"
+#include "truebearing/tracker/first_components.hpp"
 #include "truebearing/tracker/start.hpp"
 #include "truebearing/tracker/step_record.hpp"
 
@@ -27,15 +28,15 @@ struct PolarSensor {
 
   Model model(const Measurement& measurement) const {
     const Eigen::Vector2d s =
-        sigma_factor * (measurement.sigma.size() == 2 ? Eigen::Vector2d(measurement.sigma) : sigma);
+        sigma_factor * (measurement.sigma.size() >= 2 ? Eigen::Vector2d(measurement.sigma.head<2>()) : sigma);
     return {measurement.sensor ? measurement.sensor->position_m : site_m, s[0], s[1]};
   }
-  Eigen::Vector2d value(const Measurement& measurement) const { return measurement.z; }
+  bool has_value(const Measurement& measurement) const { return has_first(measurement, 2); }
+  Eigen::Vector2d value(const Measurement& measurement) const { return measurement.z.head<2>(); }
   Measured measured() const { return Measured::range_bearing(); }
   ConvertedPosition converted(const Measurement& measurement) const {
     const Model polar = model(measurement);
-    return convert_range_bearing(Eigen::Vector2d(measurement.z), polar.sigma_range_m, polar.sigma_bearing_rad,
-                                 polar.site_m);
+    return convert_range_bearing(value(measurement), polar.sigma_range_m, polar.sigma_bearing_rad, polar.site_m);
   }
   PositionFix fix(const Measurement& measurement) const {
     const ConvertedPosition position = converted(measurement);
@@ -63,6 +64,7 @@ struct ConvertedSensor {
     const bool is_known = across.dot(expected.P.topLeftCorner<2, 2>() * across) < across.dot(R * across);
     return {is_known ? R : polar.converted(measurement).R_m2};
   }
+  bool has_value(const Measurement& measurement) const { return polar.has_value(measurement); }
   Eigen::Vector2d value(const Measurement& measurement) const { return polar.converted(measurement).position_m; }
   Measured measured() const { return Measured::range_bearing(); }
   PositionFix fix(const Measurement& measurement) const {

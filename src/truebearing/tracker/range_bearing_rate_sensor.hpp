@@ -20,12 +20,13 @@ struct RangeBearingRateSensor {
   Eigen::Vector3d sigma{1.0, 1.0, 1.0};  ///< m, rad, m/s
   double sigma_factor = 1.0;
   Eigen::Vector2d site_m = Eigen::Vector2d::Zero();
+  double correlation = 0.0;  ///< of range and range rate
 
   Model model(const Measurement& measurement) const {
     const SensorState from = measurement.sensor.value_or(SensorState{site_m, Eigen::Vector2d::Zero()});
     const Eigen::Vector3d s =
         sigma_factor * (measurement.sigma.size() == 3 ? Eigen::Vector3d(measurement.sigma) : sigma);
-    return {from.position_m, from.velocity_mps, s[0], s[1], s[2]};
+    return {from.position_m, from.velocity_mps, s[0], s[1], s[2], correlation};
   }
   Model::Vector value(const Measurement& measurement) const { return measurement.z; }
   Measured measured() const { return Model::measured(); }

@@ -14,6 +14,7 @@
 #include "truebearing/measurement/position_and_rate.hpp"
 #include "truebearing/measurement/range_bearing_elevation_rate.hpp"
 #include "truebearing/tracker/any_sensor.hpp"
+#include "truebearing/tracker/first_components.hpp"
 #include "truebearing/tracker/start.hpp"
 
 namespace truebearing {
@@ -28,7 +29,7 @@ struct SpaceSite {
   Eigen::Vector3d site_m = Eigen::Vector3d::Zero();
 
   Sigma sigma_of(const Measurement& measurement) const {
-    return sigma_factor * (measurement.sigma.size() == M ? Sigma(measurement.sigma) : sigma);
+    return sigma_factor * (measurement.sigma.size() >= M ? Sigma(measurement.sigma.template head<M>()) : sigma);
   }
   Eigen::Vector3d place(const Measurement& measurement) const {
     if (!measurement.sensor) return site_m;
@@ -56,6 +57,7 @@ struct SpaceSite {
   }
 };
 
+/// A range rate behind the three is left alone.
 struct RangeBearingElevationSensor {
   using Model = RangeBearingElevation<>;
   static constexpr bool kMeasuresPosition = false;
@@ -63,7 +65,8 @@ struct RangeBearingElevationSensor {
   SpaceSite<3> site;
 
   Model model(const Measurement& measurement) const { return {site.place(measurement), site.sigma_of(measurement)}; }
-  Model::Vector value(const Measurement& measurement) const { return measurement.z; }
+  bool has_value(const Measurement& measurement) const { return has_first(measurement, 3); }
+  Model::Vector value(const Measurement& measurement) const { return measurement.z.head<3>(); }
   Measured measured() const { return Model::measured(); }
   PositionFix fix(const Measurement& measurement) const { return site.converted(measurement); }
 };
@@ -78,6 +81,7 @@ struct ConvertedElevationSensor {
   Model model(const Measurement& measurement, const Prediction& expected) const {
     return {site.converted_R(measurement, expected)};
   }
+  bool has_value(const Measurement& measurement) const { return has_first(measurement, 3); }
   Model::Vector value(const Measurement& measurement) const { return site.converted(measurement).z; }
   Measured measured() const { return RangeBearingElevation<>::measured(); }
   PositionFix fix(const Measurement& measurement) const { return site.converted(measurement); }
@@ -98,9 +102,10 @@ struct RangeBearingElevationRateSensor {
   PositionFix fix(const Measurement& measurement) const { return site.converted(measurement); }
 };
 
-/// The same, converted to a position, and to a speed along the direction in which the target is measured.
+/// The same, converted to a position, and to a speed along the direction in which the target is measured, from which
+/// what its error has in common with the range's is taken (range_rate_sensor.hpp).
 struct ConvertedElevationRateSensor {
-  using Model = PositionAndRate<>;
+  using Model = PositionAndRate<3>;
   static constexpr bool kMeasuresPosition = false;
 
   SpaceSite<4> site;
@@ -108,12 +113,15 @@ struct ConvertedElevationRateSensor {
 
   Model model(const Measurement& measurement, const Prediction& expected) const {
     const double sigma_rate_mps = site.sigma_of(measurement)[3] * std::sqrt(1.0 - correlation * correlation);
-    return {site.converted_R(measurement, expected), along(measurement), distance_share(measurement), sigma_rate_mps};
+    const Eigen::Vector3d u = along(measurement);
+    Model::State row;
+    row << -range_share(measurement) * u, u;
+    return {site.converted_R(measurement, expected), row, 0.0, sigma_rate_mps};
   }
   /// The speed as if the sensor were at rest at the origin.
   Model::Vector value(const Measurement& measurement) const {
     const Eigen::Vector3d u = along(measurement);
-    const double c = distance_share(measurement);
+    const double c = range_share(measurement);
     Model::Vector z;
     z << site.converted(measurement).z,
         measurement.z[3] + u.dot(site.velocity(measurement)) - c * (measurement.z[0] + u.dot(site.place(measurement)));
@@ -127,7 +135,7 @@ struct ConvertedElevationRateSensor {
     const double bearing = measurement.z[1], elevation = measurement.z[2], level = std::cos(elevation);
     return {level * std::sin(bearing), level * std::cos(bearing), std::sin(elevation)};
   }
-  double distance_share(const Measurement& measurement) const {
+  double range_share(const Measurement& measurement) const {
     const SpaceSite<4>::Sigma s = site.sigma_of(measurement);
     return correlation * s[3] / s[0];
   }

@@ -10,6 +10,7 @@
 #include "tests/support/error_message.hpp"
 #include "truebearing/core/angle.hpp"
 #include "truebearing/evaluation/time_steps.hpp"
+#include "truebearing/measurement/range_bearing_rate.hpp"
 #include "truebearing/simulation/bearings_only_scenario.hpp"
 
 namespace truebearing::target_motion_bound_test {
@@ -252,6 +253,51 @@ TEST(TargetMotionBound, WithAPriorFrequenciesAddToIt) {
       << "not of the position";
   EXPECT_LT(at(both, recording, 1050.0).position_m2, 0.2 * at(bearings, recording, 1050.0).position_m2);
   EXPECT_LT(at(both, recording, 1050.0).position_m2, at({}, recording, 1050.0).position_m2);
+}
+
+// Of a radar: the inverse of the information about the last state that all measurements of a straight course have, summed
+// up without a recursion.
+TEST(TargetMotionBound, OfARadarIsTheInformationOfAllMeasurements) {
+  Recording recording;
+  recording.measured = RangeBearingRate<>::measured().components;
+  recording.truth_space = &plane_space();
+  recording.truth.resize(1);
+  const Eigen::Vector4d last(9000.0, 12000.0, -150.0, 100.0);
+  constexpr int kSteps = 30;
+  const RangeBearingRate<> radar{{0.0, 0.0}, {0.0, 0.0}, 50.0, 0.005, 1.0, 0.6};
+  Eigen::Matrix4d with = Eigen::Matrix4d::Zero(), without = with;
+  for (int k = 1; k <= kSteps; ++k) {
+    Eigen::Matrix4d back = Eigen::Matrix4d::Identity();
+    back(0, 2) = back(1, 3) = k - kSteps;
+    const Eigen::Vector4d x = back * last;
+    recording.measurements.push_back({.time_s = double(k), .z = radar.h(x), .sigma = {}, .sensor = {}});
+    recording.truth[0].x.emplace_back(x);
+    const Eigen::Matrix<double, 3, 4> G = radar.H(x) * back;
+    const Eigen::Matrix3d R = radar.R();
+    with += G.transpose() * R.inverse() * G;
+    without += G.topRows<2>().transpose() * R.topLeftCorner<2, 2>().inverse() * G.topRows<2>();
+  }
+  TargetMotionBound bound;
+  EXPECT_THAT(error_message([&] { at(bound, recording, 30.0); }), HasSubstr("range_sigma_m"));
+  bound.range_sigma_m = 50.0;
+  bound.bearing_sigma_rad = 0.005;
+  bound.range_rate_sigma_mps = 1.0;
+  bound.range_rate_correlation = 0.6;
+  const auto expect = [&](const Eigen::Matrix4d& J) {
+    const TargetMotionVariance variance = at(bound, recording, 30.0);
+    const Eigen::Matrix4d P = J.inverse();
+    EXPECT_NEAR(variance.position_m2, (P.topLeftCorner<2, 2>().trace()), 1e-6 * variance.position_m2);
+    EXPECT_NEAR(variance.velocity_m2ps2, (P.bottomRightCorner<2, 2>().trace()), 1e-6 * variance.velocity_m2ps2);
+    return variance.velocity_m2ps2;
+  };
+  const double told = expect(with);
+  bound.range_rates = false;
+  EXPECT_GT(expect(without), 1.2 * told) << "what the range rate tells";
+  recording.measured.pop_back();
+  for (Measurement& measurement : recording.measurements) measurement.z.conservativeResize(2);
+  expect(without);
+  bound.prior.emplace();
+  EXPECT_THAT(error_message([&] { at(bound, recording, 30.0); }), HasSubstr("prior"));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "truebearing/core/error.hpp"
 #include "truebearing/measurement/posterior_information.hpp"
 #include "truebearing/measurement/bearing.hpp"
+#include "truebearing/measurement/range_bearing_rate.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
 
 namespace truebearing {
@@ -21,11 +22,17 @@ bool uses_frequencies(const TargetMotionBound& bound, const Recording& recording
   return bound.frequencies && measures_bearing_and_frequency(recording.measured);
 }
 
+bool is_of_radar(const Recording& recording) {
+  return recording.measured == Measured::range_bearing().components ||
+         recording.measured == RangeBearingRate<>::measured().components;
+}
+
 void check_measured(const TargetMotionBound& bound, const Recording& recording) {
   if (recording.measured != std::vector<std::string>{"bearing_deg"} &&
-      !measures_bearing_and_frequency(recording.measured))
-    throw InputError(kBound, fmt::format("cannot be made for {}", fmt::join(recording.measured, ", ")),
-                     "bearing_deg, or bearing_deg and frequency_hz");
+      !measures_bearing_and_frequency(recording.measured) && !is_of_radar(recording))
+    throw InputError(
+        kBound, fmt::format("cannot be made for {}", fmt::join(recording.measured, ", ")),
+        "bearing_deg with frequency_hz or without, or range_m and bearing_deg with range_rate_mps or without");
   if (!recording.truth_space || !begins_in_plane(*recording.truth_space) || recording.truth.size() != 1)
     throw InputError(kBound, "needs the truth of one target in the plane");
   if (uses_frequencies(bound, recording) && recording.truth_space != &plane_frequency_space())
@@ -88,6 +95,7 @@ Eigen::Matrix4d prior_covariance(const RangePrior& prior, const Measurement& mea
 std::vector<TargetMotionVariance> TargetMotionBound::variances(const Recording& recording,
                                                                const std::vector<int>& steps) const {
   check_measured(*this, recording);
+  if (is_of_radar(recording)) return variances_of_radar(recording, steps);
   const ConstantVelocity<2, ContinuousWhiteNoise> motion{{q_m2ps3}};
   const bool with_frequencies = uses_frequencies(*this, recording);
   const std::vector<BoundedVector>& truth = recording.truth.front().x;
@@ -146,6 +154,41 @@ std::vector<TargetMotionVariance> TargetMotionBound::variances(const Recording& 
       if (const Eigen::Index level = levels.find(frequency_hz); level >= 0)
         variances[i].frequency_hz2 = (*P)(4 + level, 4 + level);
     }
+  }
+  return variances;
+}
+
+std::vector<TargetMotionVariance> TargetMotionBound::variances_of_radar(const Recording& recording,
+                                                                        const std::vector<int>& steps) const {
+  if (prior) throw InputError(kBound + std::string(".prior"), "is of a range, which is measured here");
+  const ConstantVelocity<2, ContinuousWhiteNoise> motion{{q_m2ps3}};
+  const std::vector<BoundedVector>& truth = recording.truth.front().x;
+  const std::size_t end = q_m2ps3 > 0.0 ? truth.size() : steady_steps(truth);
+  const bool with_rates = range_rates && recording.measured.size() == 3;
+  PosteriorInformation<4> information;
+  std::vector<TargetMotionVariance> variances(steps.size());
+  double time_s = 0.0;
+  for (std::size_t k = 0; k < end; ++k) {
+    const Measurement& measurement = recording.measurements[k];
+    const Eigen::Vector4d x = truth[k].head<4>();
+    if (k > 0) information.predict(motion.F(measurement.time_s - time_s), motion.Q(measurement.time_s - time_s));
+    time_s = measurement.time_s;
+    const SensorState radar = measurement.sensor.value_or(SensorState{});
+    if (!measurement.is_missing() && x.allFinite()) {
+      const double sigma_range_m = sigma_of(measurement, 0, range_sigma_m, "range_sigma_m");
+      const double sigma_rad = sigma_of(measurement, 1, bearing_sigma_rad, "bearing_sigma_deg");
+      if (with_rates)
+        information.update(RangeBearingRate<>{radar.position_m, radar.velocity_mps, sigma_range_m, sigma_rad,
+                                              sigma_of(measurement, 2, range_rate_sigma_mps, "range_rate_sigma_mps"),
+                                              range_rate_correlation},
+                           x);
+      else
+        information.update(RangeBearing<>{radar.position_m, sigma_range_m, sigma_rad}, x);
+    }
+    for (std::size_t i = 0; i < steps.size(); ++i)
+      if (steps[i] == static_cast<int>(k))
+        if (const std::optional<Eigen::Matrix4d> P = information.covariance())
+          variances[i] = target_motion_variance(x, *P, radar);
   }
   return variances;
 }

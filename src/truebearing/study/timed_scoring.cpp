@@ -15,6 +15,10 @@ TargetMotionBound read_bound(TableReader table) {
     bound.bearing_sigma_rad = radians(table.number("bearing_sigma_deg", {0.0, 90.0, true}));
   bound.frequencies = table.boolean_or("frequencies", true);
   if (table.has("frequency_sigma_hz")) bound.frequency_sigma_hz = table.number("frequency_sigma_hz", kPositive);
+  if (table.has("range_sigma_m")) bound.range_sigma_m = table.number("range_sigma_m", kPositive);
+  bound.range_rates = table.boolean_or("range_rates", true);
+  if (table.has("range_rate_sigma_mps")) bound.range_rate_sigma_mps = table.number("range_rate_sigma_mps", kPositive);
+  bound.range_rate_correlation = table.number_or("range_rate_correlation", 0.0, {-0.999, 0.999});
   bound.sound_mps = table.number_or("sound_mps", kSoundInWater_mps, kPositive);
   if (table.has("prior")) bound.prior = read_range_prior(table.table("prior"));
   table.finish();

@@ -42,9 +42,11 @@ void LogFollower::follow(const Recording& recording, int number, double epoch_s)
   canvas_.add_measured(recording, account_.picture);
   if (account_.picture.beam.time_s.empty()) canvas_.add_beam(recording, account_.picture);
   std::vector<TrackerCounts> before(account_.trackers.size());
-  for (const Measurement& logged : recording.measurements) {
-    Measurement measurement = logged;
-    measurement.time_s -= epoch_s;
+  std::vector<Measurement> measurements = recording.measurements;
+  for (Measurement& measurement : measurements) measurement.time_s -= epoch_s;
+  trackers_.foresee(measurements);
+  for (std::size_t step = 0; step < measurements.size(); ++step) {
+    const Measurement &logged = recording.measurements[step], &measurement = measurements[step];
     for (std::size_t i = 0; i < before.size(); ++i) before[i] = trackers_.counts(static_cast<int>(i));
     trackers_.step(measurement);
     for (std::size_t i = 0; i < before.size(); ++i) {

@@ -29,6 +29,7 @@ RunPicture draw(TrackerSet trackers, const std::vector<std::string>& drawn, cons
   }
   canvas.add_measured(recording, picture);
   canvas.add_beam(recording, picture);
+  trackers.foresee(recording.measurements);
   for (const Measurement& measurement : recording.measurements) {
     trackers.step(measurement);
     for (int i = 0; i < trackers.size(); ++i)

@@ -116,6 +116,7 @@ std::vector<RunScore> score_recording(TrackerSet& trackers, const std::vector<Sc
   for (const Scorer& scorer : scorers) runs.emplace_back(scorer, recording, rule);
 
   trackers.reset();
+  trackers.foresee(recording.measurements);
   for (std::size_t step = 0; step < recording.measurements.size(); ++step) {
     trackers.step(recording.measurements[step]);
     if (static_cast<int>(step) + 1 < rule.from_step) continue;

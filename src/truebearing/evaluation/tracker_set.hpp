@@ -35,6 +35,8 @@ class TrackerSet {
   std::span<const TrackEvent> events(int entry) const;
 
   void reset();
+  /// All measurements of a run, after reset(), for the trackers that look back.
+  void foresee(std::span<const Measurement> measurements) { ensemble_.foresee(measurements); }
   TrackerSet fresh() const;
   /// Becomes a copy of `other` as it stands, without the records of its last step, where that was made by fresh() from
   /// this one or from the same. The name of a tracker that cannot be copied, and nothing is of use then; else empty.

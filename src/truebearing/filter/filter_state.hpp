@@ -94,6 +94,12 @@ class FilterState final : public TrackedState {
 
   std::unique_ptr<TrackedState> fresh() const override { return std::make_unique<FilterState>(motion_); }
 
+  BoundedMatrix cross_covariance(double dt_s) const override {
+    if constexpr (requires { filter_.cross_covariance(*motion_, dt_s); })
+      if (!motion_->is_linear()) return filter_.cross_covariance(*motion_, dt_s);
+    return filter_.P() * motion_->F(filter_.x(), dt_s).transpose();
+  }
+
  private:
   static constexpr bool kCarriesP = std::is_reference_v<decltype(std::declval<const Filter&>().P())>;
 

@@ -127,12 +127,12 @@ StepStatus InteractingMultipleModel::predict(double dt_s) {
 }
 
 void InteractingMultipleModel::mix_all(const ModeMatrix& Pi, const ModeVector& c) {
-  for (Eigen::Index j = 0; j < modes(); ++j) {
+  for (Eigen::Index j = 0; j < mode_count(); ++j) {
     ModeVector weights = Pi.col(j).cwiseProduct(probabilities_);
     if (c[j] > 0.0)
       weights /= c[j];
     else
-      weights = ModeVector::Unit(modes(), j);  // a mode that cannot be entered keeps to itself
+      weights = ModeVector::Unit(mode_count(), j);  // a mode that cannot be entered keeps to itself
     const TrackedState& own = *modes_[static_cast<std::size_t>(j)];
     with_count(own.size(), [&]<int N>(std::integral_constant<int, N>) {
       if constexpr (N > 0) mix<N>(weights, modes_, own, *scratch_[static_cast<std::size_t>(j)]);
@@ -141,7 +141,7 @@ void InteractingMultipleModel::mix_all(const ModeMatrix& Pi, const ModeVector& c
 }
 
 StepStatus InteractingMultipleModel::update(const AnyMeasurement& measurement, const StateUpdateTarget& combined) {
-  ModeVector log_weight(modes());
+  ModeVector log_weight(mode_count());
   for (std::size_t j = 0; j < modes_.size(); ++j) {
     scratch_[j]->assign(*modes_[j]);
     const StepStatus status = scratch_[j]->update(measurement, updates_[j]);
@@ -172,13 +172,13 @@ void InteractingMultipleModel::mixture_of_innovations(const ModeVector& log_weig
   combined.S.setZero(m, m);
   combined.K.setZero(size(), m);
   double total = 0.0;
-  for (Eigen::Index j = 0; j < modes(); ++j) {
+  for (Eigen::Index j = 0; j < mode_count(); ++j) {
     if (!std::isfinite(log_weight[j])) continue;
     total += predicted_[j];
     combined.nu += predicted_[j] * updates_[static_cast<std::size_t>(j)].nu;
   }
   combined.nu /= total;
-  for (Eigen::Index j = 0; j < modes(); ++j) {
+  for (Eigen::Index j = 0; j < mode_count(); ++j) {
     if (!std::isfinite(log_weight[j])) continue;
     const StateUpdate& update = updates_[static_cast<std::size_t>(j)];
     const BoundedVector d = update.nu - combined.nu;

@@ -13,6 +13,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "truebearing/core/bounded.hpp"
@@ -37,9 +38,11 @@ class InteractingMultipleModel final : public TrackedState {
   StepStatus update(const AnyMeasurement& measurement, const StateUpdateTarget& update) override;
   void assign(const TrackedState& other) override;
   std::unique_ptr<TrackedState> fresh() const override;
+  std::span<const std::unique_ptr<TrackedState>> modes() const override { return modes_; }
+  ModeMatrix transition(double dt_s) const override { return chain_.over(dt_s); }
 
  private:
-  Eigen::Index modes() const { return probabilities_.size(); }
+  Eigen::Index mode_count() const { return probabilities_.size(); }
   void mix_all(const ModeMatrix& Pi, const ModeVector& c);
   void mixture_of_innovations(const ModeVector& log_weight, const StateUpdateTarget& combined) const;
   void refresh() const override;

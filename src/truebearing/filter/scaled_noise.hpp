@@ -51,6 +51,7 @@ class ScaledNoise final : public TrackedState {
   std::unique_ptr<TrackedState> fresh() const override {
     return std::make_unique<ScaledNoise>(state_->fresh(), sigma_factor_);
   }
+  BoundedMatrix cross_covariance(double dt_s) const override { return state_->cross_covariance(dt_s); }
 
  private:
   std::unique_ptr<TrackedState> state_;  // one filter, whose estimate stands where it is

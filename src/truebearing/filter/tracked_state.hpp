@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <span>
 
 #include "truebearing/core/bounded.hpp"
 #include "truebearing/core/status.hpp"
@@ -58,6 +59,15 @@ class TrackedState {
   const ModeVector* mode_probabilities() const { return mu_; }
   /// An independent state of the same kind, not begun.
   virtual std::unique_ptr<TrackedState> fresh() const = 0;
+
+  // For those who look back (backward_step.hpp).
+  /// Of a single filter Cov(x, x dt_s later) (n x n), the estimate as it stands: P F', or what its points say. Empty of a
+  /// multiple model, whose modes are to be asked.
+  virtual BoundedMatrix cross_covariance(double) const { return {}; }
+  /// The modes of a multiple model (r); none of a single filter.
+  virtual std::span<const std::unique_ptr<TrackedState>> modes() const { return {}; }
+  /// Pi (r x r) of a multiple model over dt_s.
+  virtual ModeMatrix transition(double) const { return ModeMatrix::Ones(1, 1); }
 
  protected:
   explicit TrackedState(int size) : size_(size) {}

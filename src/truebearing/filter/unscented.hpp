@@ -76,6 +76,19 @@ class UnscentedKalmanFilter {
     return motion.carry(dt_s, x_, P_);
   }
 
+  /// Cov(x, f(x)) across a nonlinear motion (n x n), through the points: what a smoother looks back by.
+  template <NonlinearMotionModel Motion>
+  Covariance cross_covariance(const Motion& motion, Scalar dt_s) const {
+    const Points<N> offsets = offsets_of_points();
+    const PointStates X = points(offsets);
+    Covariance cross = Covariance::Zero();
+    for (std::size_t i = 1; i <= N; ++i) {
+      const State across = motion.f(X[i], dt_s) - motion.f(X[N + i], dt_s);
+      cross += kWeight * offsets.col(static_cast<Eigen::Index>(i)) * across.transpose();
+    }
+    return cross;
+  }
+
   /// Takes one measurement z (m), over points drawn anew from P. `failed` leaves x and P as they were: z, R or the
   /// result not finite, R, S or P not positive (semi-)definite, or S so ill-conditioned that the result would not be
   /// worth having. Residuals of the points are taken from h(x) and averaged there, so that an angle may wrap among

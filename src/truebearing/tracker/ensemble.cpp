@@ -38,6 +38,10 @@ std::string Ensemble::assign(const Ensemble& other) {
   return {};
 }
 
+void Ensemble::foresee(std::span<const Measurement> measurements) {
+  for (Member& member : members_) member.tracker->foresee(measurements);
+}
+
 Ensemble Ensemble::fresh() const {
   Ensemble copy;
   for (const Member& member : members_) copy.add(member.name, member.tracker->fresh());

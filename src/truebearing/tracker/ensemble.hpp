@@ -29,6 +29,8 @@ class Ensemble {
   /// Steps every member on the measurement.
   void step(const Measurement& measurement);
   void reset();
+  /// All measurements of a run, after reset(), for the members that look back.
+  void foresee(std::span<const Measurement> measurements);
   Ensemble fresh() const;
   /// Its members become copies of the other's (Tracker::assign()), without records. The name of one that cannot, else
   /// empty.

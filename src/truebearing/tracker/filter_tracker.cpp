@@ -73,6 +73,7 @@ void FilterTracker::check() const {
 }
 
 std::span<const StepRecord> FilterTracker::step(const Measurement& measurement) {
+  passage_ = {};
   const StreamGuard::Verdict verdict = guard_.examine(measurement, sensor_->has_value(measurement));
   const bool usable = verdict == StreamGuard::Verdict::usable;
   if (verdict == StreamGuard::Verdict::repeated || verdict == StreamGuard::Verdict::out_of_order) return refuse();
@@ -102,6 +103,7 @@ std::span<const StepRecord> FilterTracker::step(const Measurement& measurement) 
     lost_ = true;
     return give_up();
   }
+  passage_.used = used;
   if (used)
     used_time_s_ = measurement.time_s;
   else
@@ -138,6 +140,7 @@ bool FilterTracker::assign(const Tracker& tracker) {
   begun_ = other->begun_;
   state_->assign(*other->state_);
   used_time_s_ = other->used_time_s_;
+  passage_ = other->passage_;
   lost_ = other->lost_;
   failed_in_row_ = other->failed_in_row_;
   challenger_->assign(*other->challenger_);
@@ -165,6 +168,7 @@ void FilterTracker::begin(const PriorStart& start) {
 
 void FilterTracker::restart(double time_s) {
   ++record_.track;
+  passage_.begins = true;
   forget();
   begun_ = false;
   if (const auto* prior = std::get_if<PriorStart>(&start_)) begin(*prior);
@@ -231,7 +235,8 @@ StepStatus FilterTracker::update(const Measurement& measurement) {
       break;
     case Gate::Verdict::passes_widened:
       predict_again();
-      widen(*state_, innovation.nis / gate.threshold());
+      passage_.widened = innovation.nis / gate.threshold();
+      widen(*state_, passage_.widened);
       forget_challenger();
       if (state_->update(taken, {innovation.nu, innovation.S, gain, innovation.nis}) == StepStatus::failed) {
         predict_again();
@@ -249,6 +254,7 @@ StepStatus FilterTracker::update(const Measurement& measurement) {
       record_.innovation.reset();
       state_.swap(challenger_);
       forget();
+      passage_.begins = true;
       return StepStatus::ok;
     }
   }

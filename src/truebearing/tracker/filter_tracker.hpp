@@ -37,6 +37,13 @@ struct FilterTrackerOptions {
 /// A state of more components than `space` has is published without the last of them.
 class FilterTracker : public Successor {
  public:
+  /// How the last step came by the state, for those who look back.
+  struct Passage {
+    bool used = false;     ///< the state is that after this step's measurement
+    bool begins = false;   ///< it goes on from no state before: a track began, began anew, or another took over
+    double widened = 1.0;  ///< factor on P_pred by which the gate let the measurement pass
+  };
+
   /// A PriorStart has as many components as the state. Throws std::invalid_argument where the parts do not fit: a start
   /// that the sensor cannot tell, an output_pull without measured positions or ahead of time, a state shorter than its
   /// space or than what the sensor looks at.
@@ -54,6 +61,12 @@ class FilterTracker : public Successor {
   std::optional<Measured> measures() const override { return sensor_->measured(); }
   RecordBlocks blocks() const override;
   TrackerCounts counts() const override { return guard_.counts; }
+
+  /// At the last used measurement, or as the track began; means nothing where is_lost().
+  const TrackedState& state() const { return *state_; }
+  double used_time_s() const { return used_time_s_; }
+  const Passage& passage() const { return passage_; }
+  const FilterTrackerOptions& options() const { return options_; }
 
  private:
   void check() const;
@@ -90,6 +103,7 @@ class FilterTracker : public Successor {
   std::unique_ptr<TrackedState> kept_;
   std::unique_ptr<TrackedState> ahead_;  // of state_ after ahead_s, for publishing
   double used_time_s_ = 0.0;
+  Passage passage_;
   bool lost_ = false;      // the next usable measurement begins a new track
   int failed_in_row_ = 0;  // updates
   // A second hypothesis: the track that the measurements which the gate turned away would make.

@@ -24,6 +24,7 @@ std::span<const StepRecord> FilterTracker::start_from(const Measurement& measure
     begun_ = false;
     return {};
   }
+  passage_.used = passage_.begins = true;
   used_time_s_ = measurement.time_s;
   record_.time_s = measurement.time_s;
   record_.sensor = measurement.sensor;

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "truebearing/tracker/smoothing_tracker.hpp"
+
+#include <stdexcept>
+#include <utility>
+
+#include "truebearing/core/covariance.hpp"
+
+namespace truebearing {
+
+SmoothingTracker::SmoothingTracker(std::unique_ptr<FilterTracker> filter, double lag_s)
+    : filter_(std::move(filter)), lag_s_(lag_s), backward_(filter_->state()) {
+  if (filter_->options().output_pull > 0.0 || filter_->options().ahead_s > 0.0)
+    throw std::invalid_argument("a smoother is of what a filter estimates, without output_pull or ahead_s");
+  if (!(lag_s_ > 0.0)) throw std::invalid_argument("a lag is above 0");
+}
+
+std::unique_ptr<Tracker> SmoothingTracker::fresh() const {
+  std::unique_ptr<Tracker> filter = filter_->fresh();
+  return std::make_unique<SmoothingTracker>(
+      std::unique_ptr<FilterTracker>(static_cast<FilterTracker*>(filter.release())), lag_s_);
+}
+
+void SmoothingTracker::reset() {
+  filter_->reset();
+  foreseen_ = false;
+  knots_.clear();
+  steps_.clear();
+  counted_.clear();
+  next_ = 0;
+  counts_ = {};
+  account_ = nullptr;
+}
+
+std::span<const StepRecord> SmoothingTracker::step(const Measurement& measurement) {
+  account_ = nullptr;
+  if (!foreseen_) return filter_->step(measurement);
+  if (next_ >= steps_.size()) return {};
+  counts_ = counted_[next_];
+  const std::optional<Step>& step = steps_[next_++];
+  if (!step) return {};
+  account_ = &step->account;
+  return {&step->record, 1};
+}
+
+void SmoothingTracker::foresee(std::span<const Measurement> measurements) {
+  reset();
+  for (const Measurement& measurement : measurements) take(measurement);
+  if (lag_s_ == std::numeric_limits<double>::infinity()) {
+    smooth_interval();
+  } else {
+    for (std::optional<Step>& step : steps_)
+      if (step && step->can_look_back) smooth_with_lag(*step);
+  }
+  const Step* before = nullptr;
+  for (std::optional<Step>& step : steps_) {
+    if (!step) continue;
+    if (step->is_as_before && before) {
+      step->record.x = before->record.x;
+      step->record.P = before->record.P;
+      step->record.mode_probabilities = before->record.mode_probabilities;
+      step->account = before->account;
+    }
+    before = &*step;
+  }
+  foreseen_ = true;
+}
+
+void SmoothingTracker::add_knot(double time_s, bool begins, double widened) {
+  ModeEstimates filtered = estimates_of(filter_->state());
+  const bool broken = widened != 1.0 && filtered.modes.size() > 1;
+  knots_.push_back({time_s, std::move(filtered), begins || broken, widened});
+}
+
+void SmoothingTracker::take(const Measurement& measurement) {
+  // A track that begins with a prior has a state before its first measurement.
+  if (knots_.empty() && !filter_->is_lost()) add_knot(filter_->used_time_s(), true, 1.0);
+  const std::span<const StepRecord> records = filter_->step(measurement);
+  counted_.push_back(filter_->counts());
+  const FilterTracker::Passage& passage = filter_->passage();
+  if (passage.used) add_knot(filter_->used_time_s(), passage.begins, passage.widened);
+  std::optional<Step>& step = steps_.emplace_back();
+  if (records.empty()) return;
+  const StepRecord& record = records.front();
+  step.emplace();
+  step->record = record;
+  step->record.prediction.reset();
+  step->record.innovation.reset();
+  step->record.gain.reset();
+  step->account.filter_P = record.P;
+  if (record.innovation) {
+    step->account.nis = record.innovation->nis;
+    step->account.measured = static_cast<int>(record.innovation->nu.size());
+  }
+  step->is_at_knot = passage.used;
+  step->is_as_before = record.status == StepStatus::rejected && !record.prediction;
+  step->can_look_back = !knots_.empty() && !step->is_as_before && record.status != StepStatus::failed &&
+                        (passage.used || !passage.begins);
+  if (!knots_.empty()) step->knot = knots_.size() - 1;
+}
+
+// Whether a later knot belongs to the same track.
+bool SmoothingTracker::goes_on(std::size_t knot) const {
+  return knot + 1 < knots_.size() && !knots_[knot + 1].begins;
+}
+
+// The smoothed estimate at a knot, from that at the next.
+std::optional<ModeEstimates> SmoothingTracker::passed(std::size_t knot, const ModeEstimates& next) {
+  const Knot& to = knots_[knot + 1];
+  return backward_.smoothed(knots_[knot].filtered, to.time_s - knots_[knot].time_s, next, to.widened);
+}
+
+// The same at a step behind its knot, from the filter's prediction there.
+std::optional<ModeEstimates> SmoothingTracker::at(const Step& step, const ModeEstimates& next) {
+  if (step.is_at_knot) return passed(step.knot, next);
+  const Knot &from = knots_[step.knot], &to = knots_[step.knot + 1];
+  const double time_s = step.record.time_s;
+  const std::optional<ModeEstimates> there = backward_.predicted(from.filtered, time_s - from.time_s);
+  return there ? backward_.smoothed(*there, to.time_s - time_s, next, to.widened) : std::nullopt;
+}
+
+void SmoothingTracker::smooth_interval() {
+  ModeEstimates next;  // smoothed, at knot `done`; the filter's own where that came to nothing
+  bool is_smoothed = false;
+  std::size_t done = knots_.size();
+  const auto reach = [&](std::size_t knot) {
+    while (done > knot) {
+      --done;
+      std::optional<ModeEstimates> smoothed;
+      if (goes_on(done)) smoothed = passed(done, next);
+      is_smoothed = smoothed.has_value();
+      next = smoothed ? std::move(*smoothed) : knots_[done].filtered;
+    }
+  };
+  for (std::size_t i = steps_.size(); i-- > 0;) {
+    std::optional<Step>& step = steps_[i];
+    if (!step || !step->can_look_back || !goes_on(step->knot)) continue;
+    if (step->is_at_knot) {
+      reach(step->knot);
+      if (is_smoothed) write(next, *step);
+      continue;
+    }
+    reach(step->knot + 1);
+    if (const std::optional<ModeEstimates> smoothed = at(*step, next)) write(*smoothed, *step);
+  }
+}
+
+void SmoothingTracker::smooth_with_lag(Step& step) {
+  std::size_t last = step.knot;
+  while (goes_on(last) && knots_[last + 1].time_s <= step.record.time_s + lag_s_) ++last;
+  if (last == step.knot) return;
+  ModeEstimates next = knots_[last].filtered;
+  for (std::size_t knot = last; --knot > step.knot;) {
+    std::optional<ModeEstimates> smoothed = passed(knot, next);
+    next = smoothed ? std::move(*smoothed) : knots_[knot].filtered;
+  }
+  if (const std::optional<ModeEstimates> smoothed = at(step, next)) write(*smoothed, step);
+}
+
+void SmoothingTracker::write(const ModeEstimates& smoothed, Step& step) const {
+  const ModeEstimate all = mixture_of(smoothed);
+  const int n = space().size();
+  if (!all.x.allFinite() || !is_covariance(all.P)) return;
+  step.record.x = all.x.head(n);
+  step.record.P = all.P.topLeftCorner(n, n);
+  if (step.record.mode_probabilities) step.record.mode_probabilities = smoothed.mu;
+  step.account.looked_back = true;
+}
+
+}  // namespace truebearing

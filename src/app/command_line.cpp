@@ -76,6 +76,7 @@ int command_line(int argc, const char* const* argv) {
   add_train(all);
   add_learn(all);
   add_track(all);
+  add_smooth(all);
   add_compare(all);
   add_report(all);
   add_check(all);

@@ -12,6 +12,7 @@ void add_tune(const Subcommands& all);
 void add_train(const Subcommands& all);
 void add_learn(const Subcommands& all);
 void add_track(const Subcommands& all);
+void add_smooth(const Subcommands& all);
 void add_compare(const Subcommands& all);
 void add_report(const Subcommands& all);
 void add_check(const Subcommands& all);

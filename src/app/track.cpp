@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // truebearing track STUDY.toml LOG: the study's trackers on a recorded log, row by row as it comes. With truth in the
 // log, their errors; without, what can still be said: NIS and its consistency, whiteness, rejected and missing
-// measurements. And what the trackers noticed beside their estimates.
+// measurements. And what the trackers noticed beside their estimates. truebearing smooth does the same with the smoothers
+// of the study's filters, once the log has ended.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -21,6 +22,7 @@
 #include "app/track_output.hpp"
 #include "app/track_report.hpp"
 #include "truebearing/array/recorded_array.hpp"
+#include "truebearing/core/constants.hpp"
 #include "truebearing/evaluation/late_rows.hpp"
 #include "truebearing/evaluation/report.hpp"
 #include "truebearing/evaluation/time_steps.hpp"
@@ -47,6 +49,8 @@ struct TrackArguments {
   LogArguments reading;
   double late_s = -1.0;  // not given
   ReportArguments report;
+  bool smooth = false;
+  double lag_s = kInfinity;  ///< of `smooth`
 
   /// What is for programs or for a page: scores where the log has truth, else what can be said without.
   bool wants_results() const { return !json.empty() || report.wanted(); }
@@ -74,6 +78,11 @@ class TrackRun {
 
   // The log's clock is that of the study from epoch_s on.
   void begin_at(double epoch_s) { contents_.epoch_s = epoch_s; }
+  // All measurements of a log or a track, before their first step, where a tracker looks back.
+  void foresee(std::vector<Measurement> measurements) {
+    for (Measurement& measurement : measurements) measurement.time_s -= contents_.epoch_s;
+    trackers_.foresee(measurements);
+  }
   // Several tracks one after the other, each of which the trackers follow afresh and call by its number.
   void begin_track(int number) {
     trackers_.reset();
@@ -301,6 +310,7 @@ void track_step_log(const Study& study, const StepLogScenario& logs, const Track
   KeptLogs logs_kept;
   for (auto& [number, recording] : read) {
     if (read.size() > 1 || number != 0) run.begin_track(number);
+    if (study.looks_back()) run.foresee(recording.measurements);
     for (const Measurement& measurement : recording.measurements) run.step(measurement);
     run.end_track(recording.counts);
     rows.missing += recording.counts.missing;
@@ -347,22 +357,33 @@ void sort_by_time(Recording& recording) {
 void track_rows(const Study& study, const TrackArguments& options) {
   RecordingOptions reading = options.reading.over(study.recording_options());
   if (options.late_s >= 0.0) reading.late_keep_s = options.late_s;
+  if (study.looks_back()) {  // which waits for the end in any case
+    reading.sort_window_s = std::max(reading.sort_window_s, reading.late_keep_s);
+    reading.late_keep_s = 0.0;
+  }
   MeasurementLog reader(with_names(CsvReader(std::filesystem::path(options.log)), reading), reading);
   check_measured(reader.measured(), study.scenario(), options.log);
   // Whoever is only given the records needs no scores, and the log has no end that could be waited for.
   const bool keeps = options.wants_results() || (reader.truth_space() && !options.only_text_for_programs());
   TrackRun run(study, options, static_cast<int>(reader.measured().size()), reading);
   Recording recording;
+  std::vector<Measurement> all;  // where a tracker wants to know them beforehand
   for (bool first = true; reader.next(); first = false) {
     if (first) {
       const double epoch_s = study_epoch_s(study, reader.measurement().time_s);
       say_epoch(options, epoch_s);
       run.begin_at(epoch_s);
     }
-    run.step(reader.measurement());
     if (keeps) reader.append_to(recording);
+    if (study.looks_back()) {
+      all.push_back(reader.measurement());
+      continue;
+    }
+    run.step(reader.measurement());
     if (reader.may_wait()) run.flush();
   }
+  if (!all.empty()) run.foresee(all);
+  for (const Measurement& measurement : all) run.step(measurement);
   run.end_track(reader.counts());
   print_note(options.log, reader.findings().note());
   print_note(options.log, run.late_note());
@@ -375,8 +396,18 @@ void track_rows(const Study& study, const TrackArguments& options) {
   finish(study, options, run, reader.counts(), std::move(logs));
 }
 
+void smooth_all(Study& study, const TrackArguments& options) {
+  study.smooth_all(options.lag_s, [](const std::string& name) {
+    say(fmt::format("truebearing: {}: is left out: there is no smoother of it", name));
+  });
+  if (!study.looks_back())
+    throw InputError(options.study, "shows no filter that there is a smoother of",
+                     "a filter or an imm without output_pull and ahead_s");
+}
+
 void track(const TrackArguments& options) {
-  const Study study = Study::load(options.study);
+  Study study = Study::load(options.study);
+  if (options.smooth) smooth_all(study, options);
   std::vector<std::filesystem::path> inputs = study.input_files();
   inputs.emplace_back(options.log);
   check_outputs(options.outputs(), inputs);
@@ -392,19 +423,27 @@ void track(const TrackArguments& options) {
 
 }  // namespace
 
-void add_track(const Subcommands& all) {
-  auto options = std::make_shared<TrackArguments>();
-  const Subcommand command = all.add("track", "run the study's trackers on a recorded log");
-  add_study(command, options->study);
+namespace {
+
+void add_shared(const Subcommand& command, TrackArguments& options) {
+  add_study(command, options.study);
   command
-      .argument("log", options->log,
+      .argument("log", options.log,
                 "measurement log (CSV, or HDF5 of a line array), or step log where the study's scenario is of those; "
                 "- is standard input")
       .required();
-  command.argument("-o,--output", options->output, "write the trackers' step records as CSV; - is standard output");
+  command.argument("-o,--output", options.output, "write the trackers' step records as CSV; - is standard output");
   command.argument(
-      "--json", options->json,
+      "--json", options.json,
       "write the scores as JSON, or where the log has no truth what can be said without; - is standard output");
+}
+
+}  // namespace
+
+void add_track(const Subcommands& all) {
+  auto options = std::make_shared<TrackArguments>();
+  const Subcommand command = all.add("track", "run the study's trackers on a recorded log");
+  add_shared(command, *options);
   command.argument("--events", options->events,
                    "write what the trackers noticed (turns, a source's jumps, ...) as CSV; - is standard output");
   add_report_arguments(command, options->report);
@@ -414,6 +453,18 @@ void add_track(const Subcommands& all) {
                 "take rows as they come, and those that are up to so many seconds late where they belong, by running "
                 "the steps after them again")
       .non_negative();
+  command.runs([options] { track(*options); });
+}
+
+void add_smooth(const Subcommands& all) {
+  auto options = std::make_shared<TrackArguments>();
+  options->smooth = true;
+  const Subcommand command =
+      all.add("smooth", "run the study's filters over a recorded log, and look back from its end");
+  add_shared(command, *options);
+  command.argument("--lag", options->lag_s, "look back from so many seconds later instead (fixed lag)").positive();
+  add_report_arguments(command, options->report);
+  add_log_arguments(command, options->reading);
   command.runs([options] { track(*options); });
 }
 

@@ -49,6 +49,7 @@ const std::vector<Command> kCommands{
     {"track",
      "track small.toml log.csv -o steps.csv --json scores.json --events events.csv",
      {"steps.csv", "scores.json", "events.csv"}},
+    {"smooth", "smooth small.toml log.csv -o smoothed.csv --json smoothed.json", {"smoothed.csv", "smoothed.json"}},
     {"simulate", "simulate scenario.toml -o logs --runs 40 --seed 7 --quiet", logs(40)},
 };
 

@@ -66,7 +66,10 @@ double study_epoch_s(const Study& study, double first_time_s) {
 std::string why_no_track(const Study& study, const std::string& tracker, const LogContents& log) {
   const TrackerSpec& spec = study.tracker(tracker);
   Beginning beginning;
-  beginning.read(*study.tracker(spec.correction ? spec.correction->design.base : tracker).configuration);
+  const std::string& beginner = spec.correction ? spec.correction->design.base
+                                : spec.smoother ? spec.smoother->of
+                                                : tracker;
+  beginning.read(*study.tracker(beginner).configuration);
   if (log.missing == log.measurements) return "the log has no usable measurement";
   if (beginning.guess && !log.guess)
     return "its start needs a guess of the range, and the log has none (guess_range_m, guess_range_sigma_m)";

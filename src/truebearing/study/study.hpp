@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -61,6 +62,11 @@ class Study {
   void set_parameters(ParametersFile parameters) { parameters_ = std::move(parameters); }
   /// Gives every tracker a row, also those with `show = false`.
   void show_all();
+  /// Shows in place of every shown filter its smoother, NAME_smoothed, of that lag (SmootherSpec); what there is no
+  /// smoother of is told of, and not shown. Pairs and bounds are dropped.
+  void smooth_all(double lag_s, const std::function<void(const std::string& name)>& left_out);
+  /// Whether a shown tracker wants to know a whole run before its first step.
+  bool looks_back() const;
   const std::optional<ParametersFile>& parameters() const { return parameters_; }
 
   /// A tracker's table with its tuned numbers in it. Throws InputError where those are missing.
@@ -95,6 +101,7 @@ class Study {
   void check_trackers();
   bool lacks_motion(const TrackerSpec& spec) const;
   void check_limit(const TrackerSpec& spec);
+  void check_smoother(const TrackerSpec& spec) const;
   void check_replay(const TrackerSpec& spec, const Tracker& tracker);
 
   std::filesystem::path path_;

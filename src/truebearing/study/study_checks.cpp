@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <fmt/format.h>
 
+#include "truebearing/core/suggestion.hpp"
 #include "truebearing/correction/feature_extractor.hpp"
 #include "truebearing/correction/model_file.hpp"
 #include "truebearing/study/limit_trackers.hpp"
 #include "truebearing/study/measured_check.hpp"
+#include "truebearing/study/smoother_trackers.hpp"
 #include "truebearing/study/study.hpp"
 #include "truebearing/study/tracker_registry.hpp"
 #include "truebearing/tracker/recorded_tracker.hpp"
@@ -17,6 +19,10 @@ namespace truebearing {
 void Study::check_trackers() {
   for (const TrackerSpec& spec : trackers_) {
     if (lacks_motion(spec)) continue;
+    if (spec.smoother) {
+      check_smoother(spec);
+      continue;
+    }
     if (!spec.correction) {
       TableReader reader = tracker_reader(spec, spec.configuration, path_.string());
       ask_for_study_keys(reader);
@@ -27,7 +33,11 @@ void Study::check_trackers() {
       continue;
     }
     for (const std::string& member : spec.correction->members())
-      if (tracker(member).correction)
+      if (tracker(member).smoother)
+        throw InputError(path_.string() + ": trackers." + spec.name,
+                         "looks at \"" + member + "\", a smoother, which knows what is yet to be measured",
+                         "trackers of other kinds");
+      else if (tracker(member).correction)
         throw InputError(path_.string() + ": trackers." + spec.name,
                          "looks at \"" + member + "\", which is itself corrected", "trackers of other kinds");
     for (const auto& [quantity, threshold] : spec.correction->training.leave_out_beyond)
@@ -52,9 +62,27 @@ void Study::check_trackers() {
 // Whether it, or a tracker that it looks at, moves by what is yet to be learned: who makes it then is told what to run.
 bool Study::lacks_motion(const TrackerSpec& spec) const {
   const auto lacks = [](const TrackerSpec& one) { return one.learned && !std::filesystem::exists(one.learned->file); };
+  if (spec.smoother)
+    return std::any_of(trackers_.begin(), trackers_.end(),
+                       [&](const TrackerSpec& one) { return one.name == spec.smoother->of && lacks(one); });
   if (!spec.correction) return lacks(spec);
   const std::vector<std::string> members = spec.correction->members();
   return std::any_of(members.begin(), members.end(), [&](const std::string& name) { return lacks(tracker(name)); });
+}
+
+void Study::check_smoother(const TrackerSpec& spec) const {
+  const std::string where = path_.string() + ": trackers." + spec.name;
+  const std::vector<std::string> names = names_of(trackers_);
+  const std::string& of = spec.smoother->of;
+  if (std::find(names.begin(), names.end(), of) == names.end())
+    throw InputError(where + ".of", "names no tracker: \"" + of + "\"", suggestion(of, names));
+  const TrackerSpec& filter = tracker(of);
+  if (filter.correction || filter.smoother)
+    throw InputError(where + ".of", "is \"" + of + "\", which is no filter", "a filter of the study");
+  TableReader reader = tracker_reader(filter, filter.configuration, path_.string());
+  const std::unique_ptr<Tracker> smoother =
+      make_smoother(truebearing::make_tracker(filter.kind, reader, scenario_.get()), *spec.smoother, where);
+  check_measured(*smoother, where, *scenario_, sets_);
 }
 
 // What knows the family is a bound of it, named as one or not.

@@ -7,6 +7,7 @@
 #include "truebearing/core/suggestion.hpp"
 #include "truebearing/correction/corrected_tracker.hpp"
 #include "truebearing/study/configuration_text.hpp"
+#include "truebearing/study/smoother_trackers.hpp"
 #include "truebearing/study/study.hpp"
 #include "truebearing/study/tracker_registry.hpp"
 
@@ -45,8 +46,41 @@ SharedTable Study::configuration_of(const std::string& name) const {
   return configuration;
 }
 
+void Study::smooth_all(double lag_s, const std::function<void(const std::string& name)>& left_out) {
+  std::vector<TrackerSpec> smoothers;
+  for (TrackerSpec& spec : trackers_) {
+    if (!spec.shown || spec.smoother) continue;
+    spec.shown = false;
+    TrackerSpec smoother;
+    smoother.name = spec.name + "_smoothed";
+    smoother.kind = kSmoother;
+    smoother.configuration = std::make_shared<const toml::table>();
+    smoother.smoother = SmootherSpec{spec.name, lag_s};
+    const bool is_named = [&] {
+      const std::vector<std::string> names = names_of(trackers_);
+      return std::find(names.begin(), names.end(), smoother.name) != names.end();
+    }();
+    if (is_named) continue;
+    if (spec.correction || !can_be_smoothed(*make_tracker(spec.name)))
+      left_out(spec.name);
+    else
+      smoothers.push_back(std::move(smoother));
+  }
+  trackers_.insert(trackers_.end(), smoothers.begin(), smoothers.end());
+  // What the study compares is not shown any more.
+  scoring_.pairs.clear();
+  scoring_.bounds.clear();
+}
+
+bool Study::looks_back() const {
+  return std::any_of(trackers_.begin(), trackers_.end(),
+                     [](const TrackerSpec& spec) { return spec.shown && spec.smoother; });
+}
+
 std::string Study::configuration_line(const std::string& name) const {
-  return tracker(name).kind + " " + configuration_text(*configuration_of(name));
+  const TrackerSpec& spec = tracker(name);
+  const std::string own = spec.kind + " " + configuration_text(*configuration_of(name));
+  return spec.smoother ? fmt::format("{} of {}", own, configuration_line(spec.smoother->of)) : own;
 }
 
 std::unique_ptr<Tracker> Study::make_tracker(const std::string& name, const CorrectionModels& models) const {
@@ -57,6 +91,8 @@ std::unique_ptr<Tracker> Study::make_tracker(const std::string& name, const Corr
                                               given == models.end() ? load_model(name) : given->second,
                                               spec.correction->bounds);
   }
+  if (spec.smoother)
+    return make_smoother(make_tracker(spec.smoother->of), *spec.smoother, path_.string() + ": trackers." + name);
   TableReader reader = tracker_reader(spec, configuration_of(name), path_.string());
   return truebearing::make_tracker(spec.kind, reader, scenario_.get());
 }

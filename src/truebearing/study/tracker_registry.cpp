@@ -53,7 +53,7 @@ std::unique_ptr<Tracker> make_of_scenario(TableReader& configuration, const Scen
 
 void register_tracker(const std::string& kind, TrackerMaker maker) {
   const std::lock_guard lock(registry().mutex);
-  if (kind.empty() || kind == "corrected" || kind == kParticleLimit ||
+  if (kind.empty() || kind == "corrected" || kind == kSmoother || kind == kParticleLimit ||
       !registry().makers.emplace(kind, std::move(maker)).second)
     throw InputError("register_tracker", "the kind \"" + kind + "\" is taken", "a new name");
 }
@@ -76,7 +76,7 @@ std::unique_ptr<Tracker> make_tracker(const std::string& kind, TableReader& conf
   }
   if (!maker) {
     std::vector<std::string> valid = tracker_kinds();
-    valid.push_back("corrected");
+    valid.insert(valid.end(), {"corrected", kSmoother});
     throw configuration.error("kind", "is \"" + kind + "\"", suggestion(kind, valid));
   }
   std::unique_ptr<Tracker> tracker = maker(configuration);

@@ -14,6 +14,9 @@
 
 namespace truebearing {
 
+/// The kind of those that look back over what another tracker of the study did (SmootherSpec).
+inline constexpr const char* kSmoother = "smoother";
+
 /// Makes a tracker from its table in a study. Keys that the maker does not ask for are errors; `kind`, `like`, `tune`
 /// and `show` are read by the study itself. Throws InputError.
 using TrackerMaker = std::function<std::unique_ptr<Tracker>(TableReader& configuration)>;

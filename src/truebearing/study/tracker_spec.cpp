@@ -9,6 +9,7 @@
 #include "truebearing/core/suggestion.hpp"
 #include "truebearing/study/configuration_text.hpp"
 #include "truebearing/study/parameters_file.hpp"
+#include "truebearing/study/tracker_registry.hpp"
 
 namespace truebearing {
 namespace {
@@ -103,6 +104,13 @@ TrackerSpec read_tracker_spec(const std::string& name, const SharedTable& resolv
   ask_for_study_keys(reader);
   if (spec.kind == "corrected") {
     spec.correction = read_correction_spec(reader);
+    reader.finish();
+  }
+  if (spec.kind == kSmoother) {
+    if (!spec.tune.empty())
+      throw reader.error("tune", "is of a smoother, which has the numbers of its filter", "`tune` of that");
+    spec.smoother.emplace().of = reader.text("of");
+    spec.smoother->lag_s = reader.number_or("lag_s", spec.smoother->lag_s, kPositive);
     reader.finish();
   }
   if (reader.raw()->at_path("motion.model").value_or(std::string()) == "learned") {

@@ -2,6 +2,7 @@
 // TrackerSpec: what a study says of one of its trackers, with what it takes over from the one that it is `like`.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +14,12 @@
 
 namespace truebearing {
 
+/// What a tracker of kind "smoother" is of; see SmoothingTracker.
+struct SmootherSpec {
+  std::string of;  ///< a filter of the study, with its tuned numbers
+  double lag_s = std::numeric_limits<double>::infinity();
+};
+
 struct TrackerSpec {
   std::string name;
   std::string kind;
@@ -21,6 +28,7 @@ struct TrackerSpec {
   std::vector<std::string> tune;             ///< dotted paths of the numbers that `truebearing tune` fits
   bool shown = true;                         ///< false for companions that no table needs
   std::optional<CorrectionSpec> correction;  ///< where kind is "corrected"
+  std::optional<SmootherSpec> smoother;      ///< where kind is "smoother"
   std::optional<LearnedMotionSpec> learned;  ///< where motion.model is "learned"
 };
 

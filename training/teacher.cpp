@@ -4,27 +4,31 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <limits>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "truebearing/core/chi_square.hpp"
 #include "truebearing/core/constants.hpp"
 #include "truebearing/core/error.hpp"
+#include "truebearing/core/random.hpp"
 #include "truebearing/core/suggestion.hpp"
 #include "truebearing/correction/correction_inputs.hpp"
 #include "truebearing/evaluation/scorer.hpp"
 #include "truebearing/evaluation/target_record.hpp"
+#include "truebearing/tracker/smoothing_tracker.hpp"
 
 namespace truebearing {
 namespace {
 
 // What is taught of the steps of one run: the numbers of a TeacherSet's rows (features, label, reference, the two
-// factors, intervals, first of its track, taught, used), one row after another.
+// factors, intervals, first of its track, taught, used, error of the label), one row after another.
 using Rows = std::vector<double>;
 
 Eigen::Index row_size(Eigen::Index features, Eigen::Index state) {
-  return features + 2 * state + 2 * state * state + 3 + 3;
+  return features + 2 * state + 2 * state * state + 3 + 3 + state;
 }
 
 void append(const auto& values, Rows& rows) {
@@ -38,6 +42,7 @@ class RowMaker {
            std::vector<int> truth_index, bool whole_tracks)
       : whole_tracks_(whole_tracks),
         ensemble_(ensemble.fresh()),
+        teacher_(ensemble_.index(correction.training.teacher)),
         from_step_(correction.training.from_step),
         every_s_(correction.training.every_s),
         truth_index_(std::move(truth_index)),
@@ -47,16 +52,18 @@ class RowMaker {
       limits_.emplace_back(quantity(name), threshold);
   }
 
-  Rows rows(const Recording& recording) {
+  Rows rows(const Recording& recording, const RunKey& key) {
+    if (teacher_ >= 0) return rows_by_smoother(recording, key);
     std::vector<Rows> parts(whole_tracks_ ? recording.truth.size() : 1);
     ensemble_.reset();
+    ensemble_.foresee(recording.measurements);
     tracks_.assign(recording.truth.size(), {inputs_.extractor()});
     for (std::size_t step = 0; step < recording.measurements.size(); ++step) {
       ensemble_.step(recording.measurements[step]);
       for (std::size_t target = 0; target < tracks_.size(); ++target)
         if (const StepRecord* base = target_record(recording, target, ensemble_.records(inputs_.base())))
-          take(*base, recording.truth[target].x[step], static_cast<int>(step) + 1 >= from_step_, tracks_[target],
-               parts[whole_tracks_ ? target : 0]);
+          take(*base, lesson_of(recording.truth[target].x[step]), static_cast<int>(step) + 1 >= from_step_,
+               tracks_[target], parts[whole_tracks_ ? target : 0]);
     }
     for (std::size_t target = 1; target < parts.size(); ++target)
       parts[0].insert(parts[0].end(), parts[target].begin(), parts[target].end());
@@ -71,6 +78,50 @@ class RowMaker {
     int last = -1;                                             // number of the track that its last row was of
   };
 
+  // What a step is taught.
+  struct Lesson {
+    BoundedVector whole;   // state that the limits are of
+    BoundedVector x;       // the base's components of it
+    BoundedVector unsure;  // a draw of its error
+  };
+
+  Lesson lesson_of(const BoundedVector& true_state) const {
+    return {true_state, true_state(truth_index_), BoundedVector::Zero(static_cast<Eigen::Index>(truth_index_.size()))};
+  }
+
+  Rows rows_by_smoother(const Recording& recording, const RunKey& key) {
+    const auto& smoother = dynamic_cast<const SmoothingTracker&>(ensemble_.tracker(teacher_));
+    RandomStream random(key, StreamId::learning);
+    Rows rows;
+    ensemble_.reset();
+    ensemble_.foresee(recording.measurements);
+    tracks_.assign(1, {inputs_.extractor()});
+    for (std::size_t step = 0; step < recording.measurements.size(); ++step) {
+      ensemble_.step(recording.measurements[step]);
+      const auto bases = ensemble_.records(inputs_.base()), smoothed = ensemble_.records(teacher_);
+      if (bases.empty()) continue;
+      const StepRecord* known = smoothed.empty() ? nullptr : &smoothed.front();
+      const bool is_taught = random.uniform() < (known ? weight(*known, *smoother.account()) : 0.0) &&
+                             known->time_s == bases.front().time_s && static_cast<int>(step) + 1 >= from_step_;
+      Lesson lesson = lesson_of(known ? known->x : BoundedVector::Zero(smoother.space().size()));
+      if (is_taught) {
+        const BoundedMatrix P = known->P(truth_index_, truth_index_);
+        BoundedVector unit(P.rows());
+        for (double& value : unit) value = random.normal();
+        lesson.unsure = Eigen::LLT<BoundedMatrix>(P).matrixL() * unit;
+      }
+      take(bases.front(), lesson, is_taught, tracks_.front(), rows);
+    }
+    return rows;
+  }
+
+  // How much more the smoother knows than its filter, in [0, 1].
+  static double weight(const StepRecord& known, const SmoothingAccount& account) {
+    if (!account.looked_back || known.status == StepStatus::failed) return 0.0;
+    if (account.measured > 0 && account.nis > chi_square_quantile(kSurprise, account.measured)) return 0.0;
+    return std::clamp(1.0 - (known.P.diagonal().array() / account.filter_P.diagonal().array()).mean(), 0.0, 1.0);
+  }
+
   std::size_t quantity(const std::string& name) const {
     if (const auto found = scorer_.quantity(name)) return *found;
     throw InputError("training.leave_out_beyond", "names no quantity of the truth and the base: \"" + name + "\"",
@@ -82,7 +133,7 @@ class RowMaker {
                        [&](const auto& limit) { return !(scorer_.error(limit.first, truth, base.x) <= limit.second); });
   }
 
-  void take(const StepRecord& base, const BoundedVector& true_state, bool is_taught, Track& track, Rows& rows) {
+  void take(const StepRecord& base, const Lesson& lesson, bool is_taught, Track& track, Rows& rows) {
     CorrectionInputs::Features features;
     inputs_.extract(ensemble_, base, track.extractor, features);  // every step, for the averages
     const CorrectionInputs::Records step = inputs_.records(ensemble_, base.track);
@@ -91,12 +142,11 @@ class RowMaker {
     // The first step in every interval, so that steps of another period do not drift through it.
     if (is_taught && every_s_ > 0.0) track.next_s = every_s_ * (std::floor(base.time_s / every_s_) + 1.0);
     const OutputUnits units = inputs_.units(track.extractor, base);
-    const BoundedVector truth = true_state(truth_index_);
-    const BoundedVector label = units.output(truth - base.x);
+    const BoundedVector label = units.output(lesson.x - base.x);
     const Eigen::LLT<BoundedMatrix> covariance(units.output_covariance(step.source->P)),
         reference_covariance(units.output_covariance(step.reference->P));
     if (!features.allFinite() || !label.allFinite() || covariance.info() != Eigen::Success ||
-        reference_covariance.info() != Eigen::Success || is_beyond(true_state, base))
+        reference_covariance.info() != Eigen::Success || is_beyond(lesson.whole, base))
       is_taught = false;
     if (!is_taught && !whole_tracks_) return;
     const bool begins = base.track != track.last;
@@ -106,6 +156,7 @@ class RowMaker {
       rows.insert(rows.end(), static_cast<std::size_t>(2 * label.size() * (1 + label.size())), 0.0);
       append(Eigen::Vector3d(kNaN, kNaN, kNaN), rows);
       append(Eigen::Vector3d(begins, 0.0, base.status == StepStatus::ok), rows);
+      append(BoundedVector::Zero(label.size()), rows);
       return;
     }
     append(label, rows);
@@ -115,13 +166,15 @@ class RowMaker {
     const Intervals& intervals = track.extractor.intervals();
     append(Eigen::Vector3d(intervals.shortest_s, intervals.longest_s, intervals.coast_s), rows);
     append(Eigen::Vector3d(begins, 1.0, base.status == StepStatus::ok), rows);
+    append(units.output(lesson.unsure), rows);
   }
 
   bool whole_tracks_;
   Ensemble ensemble_;
+  int teacher_;  // the member that stands for the truth, -1: the truth
   int from_step_;
   double every_s_;
-  std::vector<int> truth_index_;  // of each component of the base's state
+  std::vector<int> truth_index_;  // in the truth, of each component of the base's state
   CorrectionInputs inputs_;
   Scorer scorer_;                                       // of the base
   std::vector<std::pair<std::size_t, double>> limits_;  // of its errors, by quantity
@@ -144,12 +197,15 @@ Eigen::VectorXd mahalanobis_lengths(const Eigen::MatrixXd& errors, const Eigen::
 TeacherSet collect_teacher_set(const Ensemble& ensemble, const CorrectionSpec& correction, const Scenario& scenario,
                                const TeacherOptions& options) {
   const StateSpace& space = ensemble.tracker(ensemble.index(correction.design.base)).space();
+  const int teacher = ensemble.index(correction.training.teacher);
+  const StateSpace& truth_space = teacher < 0 ? scenario.truth_space() : ensemble.tracker(teacher).space();
   std::vector<int> truth_index;
   for (const std::string& component : space.components) {
-    truth_index.push_back(scenario.truth_space().component_index(component));
+    truth_index.push_back(truth_space.component_index(component));
     if (truth_index.back() < 0)
       throw InputError("training",
-                       "the scenario's truth is " + scenario.truth_space().name + ", the base's state " + space.name,
+                       fmt::format("the {} is {}, the base's state {}",
+                                   teacher < 0 ? "scenario's truth" : "teacher's state", truth_space.name, space.name),
                        "a truth that has every component of the state");
   }
   const std::size_t runs = correction.training.runs;
@@ -159,8 +215,9 @@ TeacherSet collect_teacher_set(const Ensemble& ensemble, const CorrectionSpec& c
       runs, options.threads,
       [&](std::size_t run, std::size_t worker) {
         if (!makers[worker])
-          makers[worker].emplace(ensemble, correction, scenario.truth_space(), truth_index, options.whole_tracks);
-        by_run[run] = makers[worker]->rows(scenario.simulate({options.seed, options.role, run}));
+          makers[worker].emplace(ensemble, correction, truth_space, truth_index, options.whole_tracks);
+        const RunKey key{options.seed, options.role, run};
+        by_run[run] = makers[worker]->rows(scenario.simulate(key), key);
       },
       options.progress);
 
@@ -179,7 +236,8 @@ TeacherSet collect_teacher_set(const Ensemble& ensemble, const CorrectionSpec& c
                  Eigen::MatrixXd(total, 3),
                  {},
                  {},
-                 {}};
+                 {},
+                 Eigen::MatrixXd(teacher < 0 ? 0 : total, n)};
   Eigen::Index next = 0;
   for (const Rows& rows : by_run) {
     const Eigen::Index count = static_cast<Eigen::Index>(rows.size()) / row_size(d, n);
@@ -197,6 +255,7 @@ TeacherSet collect_teacher_set(const Ensemble& ensemble, const CorrectionSpec& c
         set.used.push_back(columns(part + 2, row) != 0.0);
       }
     }
+    if (teacher >= 0) set.unsure.middleRows(next, count) = columns.middleRows(part + 3, n).transpose();
     next += count;
   }
   return set;

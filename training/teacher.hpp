@@ -33,13 +33,22 @@ struct TeacherSet {
   /// Of whole tracks, else empty: (N), whether a row is the first of its track, whether it is taught (where it is not, its
   /// label, factors and reference are zero), and whether the base used a measurement there, which a network remembers.
   std::vector<bool> begins, taught, used;
+  /// Of rows that a smoother taught, else empty: (N x n), a draw of the error that it says its label has.
+  Eigen::MatrixXd unsure = {};
 
+  /// (N x n), of the truth, or as likely as that: what a covariance is to be fitted to.
+  Eigen::MatrixXd errors(const Eigen::MatrixXd& outputs) const {
+    return unsure.size() > 0 ? Eigen::MatrixXd(Y + unsure - outputs) : Eigen::MatrixXd(Y - outputs);
+  }
   Eigen::Index rows() const { return X.rows(); }
   bool is_taught(Eigen::Index row) const { return taught.empty() || taught[static_cast<std::size_t>(row)]; }
 };
 
 /// |L^-1 e| per row, for errors e (N x n) and lower factors L (N x n n): their Mahalanobis lengths (N).
 Eigen::VectorXd mahalanobis_lengths(const Eigen::MatrixXd& errors, const Eigen::MatrixXd& factors);
+
+/// Quantile of chi-square beyond which the innovation of a teacher's filter says that its models do not fit.
+inline constexpr double kSurprise = 0.999;
 
 struct TeacherOptions {
   std::uint64_t seed = 1;
@@ -51,6 +60,9 @@ struct TeacherOptions {
 };
 
 /// Runs `ensemble`, which has the members that `correction` names, over correction.training.runs runs of the scenario.
+/// Where correction.training.teacher names one, a smoother among the members stands for the truth, of one target: a step is
+/// taught with the probability by which the smoother knows more than its filter, the mean over the components of 1 - P_s /
+/// P_f, in [0, 1]; none where it did not look back, and none where its own filter was surprised (kSurprise).
 /// Steps without a record, with unknown truth, with features that are not finite or with an error of the base beyond
 /// correction.training.leave_out_beyond are left out. Throws InputError where no step is left, or where the truth lacks
 /// a component of the base's state or a quantity of those limits, all found by name.

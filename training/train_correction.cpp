@@ -155,7 +155,7 @@ std::string provenance_of(const ChangedScenario& changed) {
 void fit_covariance(const TeacherSet& met, const CorrectionSpec& spec, const StateSpace& space, RuleBase& rules) {
   const Eigen::Index n = met.Y.cols();
   rules.inflation = Eigen::VectorXd::Ones(rules.network.rules());  // until it is known
-  const Eigen::MatrixXd errors = met.Y - outputs(met, rules);
+  const Eigen::MatrixXd errors = met.errors(outputs(met, rules));
   if (!spec.design.covariance_moments) {
     const Eigen::VectorXd lengths = mahalanobis_lengths(errors, met.covariance_factors);
     rules.inflation = covariance_inflation(rules.network, met.X, lengths.cwiseAbs2() / static_cast<double>(n));
@@ -240,7 +240,7 @@ Network train_recurrent(const Lessons& lessons, const CorrectionSpec& spec, cons
   const Eigen::Index n = lessons.space.size(), entries = n * (n + 1) / 2;
   parameters.covariance_weight = Eigen::MatrixXf::Zero(entries, spec.training.units);
   parameters.covariance_bias = Eigen::VectorXf::Zero(entries);
-  const Eigen::MatrixXd errors = lessons.met.Y - outputs(lessons.met, GatedRecurrent(parameters));
+  const Eigen::MatrixXd errors = lessons.met.errors(outputs(lessons.met, GatedRecurrent(parameters)));
   Eigen::MatrixXf sigmas = in_sigmas(errors, lessons.met.covariance_factors).transpose().cast<float>();
   for (Eigen::Index row = 0; row < sigmas.cols(); ++row)
     if (!lessons.met.is_taught(row)) sigmas.col(row).setZero();
@@ -264,7 +264,8 @@ TeacherSet taught_rows(const TeacherSet& teacher) {
           of(teacher.intervals),
           {},
           {},
-          {}};
+          {},
+          teacher.unsure.size() > 0 ? of(teacher.unsure) : teacher.unsure};
 }
 
 }  // namespace
@@ -272,7 +273,9 @@ TeacherSet taught_rows(const TeacherSet& teacher) {
 CorrectionModel train_correction(const Study& study, const std::string& name, const TrainOptions& options,
                                  TrainReport* report) {
   const CorrectionSpec& spec = study.tracker(name).correction.value();
-  const Ensemble ensemble = study.make_ensemble(spec.design.members());
+  std::vector<std::string> members = spec.design.members();
+  if (!spec.training.teacher.empty()) members.push_back(spec.training.teacher);
+  const Ensemble ensemble = study.make_ensemble(members);
   const StateSpace& space = ensemble.tracker(ensemble.index(spec.design.base)).space();
   const bool recurrent = spec.design.network == NetworkKind::recurrent;
   if (recurrent) recurrent_module(options.torch_folder);  // said before the work where there is none
@@ -316,6 +319,9 @@ CorrectionModel train_correction(const Study& study, const std::string& name, co
                       {"training_rows", fmt::format("{}", found.rows)},
                       {"bounds", describe(spec.bounds)}};
   if (taught) model.provenance["scenario"] = provenance_of(*spec.training.scenario);
+  if (!spec.training.teacher.empty())
+    model.provenance["teacher"] =
+        fmt::format("without truth, by {}: {}", spec.training.teacher, study.configuration_line(spec.training.teacher));
   if (wider) model.provenance["covariance_scenario"] = provenance_of(*spec.training.covariance_scenario);
   model.validate();
   if (report) *report = found;

@@ -77,6 +77,15 @@ TEST(SmootherTrackers, NoCorrectionLooksAtOne) {
   EXPECT_THAT(refusal(looking + kSmoother), AllOf(HasSubstr("trackers.nfnn"), HasSubstr("yet to be measured")));
 }
 
+TEST(SmootherTrackers, OneTeachesInPlaceOfTheTruth) {
+  const std::string taught = replaced(kStudy, "rules = 4", "rules = 4\nteacher = \"smooth\"");
+  EXPECT_EQ(refusal(taught + kSmoother), "no error");
+  EXPECT_THAT(refusal(taught), AllOf(HasSubstr("training.teacher"), HasSubstr("no smoother")));
+  EXPECT_THAT(refusal(replaced(taught, "\"smooth\"", "\"smoth\"") + kSmoother), HasSubstr("\"smooth\""));
+  EXPECT_THAT(refusal(replaced(taught, "rules = 4", "rules = 4\nleave_out_beyond = { position_m = 1.0 }") + kSmoother),
+              HasSubstr("leave_out_beyond"));
+}
+
 TEST(SmootherTrackers, SmoothAllShowsTheSmoothersOfWhatHasOne) {
   const TemporaryFolder folder;
   Study study = Study::load(write_study(folder, kStudy + kSmoother));

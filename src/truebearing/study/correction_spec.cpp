@@ -67,12 +67,16 @@ TrainingSpec read_training(TableReader& table, NetworkKind network) {
   const std::string method =
       recurrent ? "" : table.choice_or("method", {"variable_projection", "back_propagation"}, "variable_projection");
   training.runs = static_cast<std::size_t>(table.integer("runs", 1, 1000000));
+  training.teacher = table.text_or("teacher", "");
   training.from_step = static_cast<int>(table.integer_or("from_step", 1, 1, 1000000));
   training.every_s = table.number_or("every_s", 0.0, kNonNegative);
   if (auto limits = table.table_if_present("leave_out_beyond")) {
     for (const std::string& quantity : limits->keys())
       training.leave_out_beyond.emplace_back(quantity, limits->number(quantity, kPositive));
     limits->finish();
+    if (!training.teacher.empty())
+      throw table.error("leave_out_beyond", "is of errors against the truth, which `teacher` stands for",
+                        "one of the two");
   }
   training.mirror = read_mirror(table);
   if (table.has("scenario")) training.scenario = read_changed_scenario(table, "scenario");

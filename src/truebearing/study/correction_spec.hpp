@@ -35,6 +35,8 @@ struct TrainingSpec {
   };
   Method method = Method::variable_projection;
   std::size_t runs = 400;
+  /// A smoother of the study that stands for the truth, which then is not looked at; empty: the truth itself.
+  std::string teacher = {};
   int from_step = 1;     ///< number of the first step taught, counted from 1
   double every_s = 0.0;  ///< at most one step in as many seconds is taught; 0: every step
   /// Steps at which the base's error in a quantity exceeds its threshold are not taught: a track that has changed over

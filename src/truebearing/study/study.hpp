@@ -102,6 +102,7 @@ class Study {
   bool lacks_motion(const TrackerSpec& spec) const;
   void check_limit(const TrackerSpec& spec);
   void check_smoother(const TrackerSpec& spec) const;
+  void check_teacher(const TrackerSpec& spec) const;
   void check_replay(const TrackerSpec& spec, const Tracker& tracker);
 
   std::filesystem::path path_;

@@ -40,6 +40,7 @@ void Study::check_trackers() {
       else if (tracker(member).correction)
         throw InputError(path_.string() + ": trackers." + spec.name,
                          "looks at \"" + member + "\", which is itself corrected", "trackers of other kinds");
+    check_teacher(spec);
     for (const auto& [quantity, threshold] : spec.correction->training.leave_out_beyond)
       if (scenario_->truth_space().quantity_index(quantity) < 0)
         throw InputError(path_.string() + ": trackers." + spec.name + ".training.leave_out_beyond." + quantity,
@@ -83,6 +84,20 @@ void Study::check_smoother(const TrackerSpec& spec) const {
   const std::unique_ptr<Tracker> smoother =
       make_smoother(truebearing::make_tracker(filter.kind, reader, scenario_.get()), *spec.smoother, where);
   check_measured(*smoother, where, *scenario_, sets_);
+}
+
+// A smoother that stands for the truth, of the same state as what it teaches.
+void Study::check_teacher(const TrackerSpec& spec) const {
+  const std::string& teacher = spec.correction->training.teacher;
+  if (teacher.empty()) return;
+  std::vector<std::string> smoothers;
+  for (const TrackerSpec& other : trackers_)
+    if (other.smoother) smoothers.push_back(other.name);
+  const std::string where = path_.string() + ": trackers." + spec.name + ".training.teacher";
+  if (smoothers.empty())
+    throw InputError(where, "is \"" + teacher + "\", and the study has no smoother", "a tracker of kind \"smoother\"");
+  if (std::find(smoothers.begin(), smoothers.end(), teacher) == smoothers.end())
+    throw InputError(where, "names no smoother: \"" + teacher + "\"", suggestion(teacher, smoothers));
 }
 
 // What knows the family is a bound of it, named as one or not.

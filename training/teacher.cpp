@@ -119,7 +119,7 @@ class RowMaker {
   static double weight(const StepRecord& known, const SmoothingAccount& account) {
     if (!account.looked_back || known.status == StepStatus::failed) return 0.0;
     if (account.measured > 0 && account.nis > chi_square_quantile(kSurprise, account.measured)) return 0.0;
-    return std::clamp(1.0 - (known.P.diagonal().array() / account.filter_P.diagonal().array()).mean(), 0.0, 1.0);
+    return std::clamp(1.0 - (known.P.diagonal().array() / account.filter_variance.array()).mean(), 0.0, 1.0);
   }
 
   std::size_t quantity(const std::string& name) const {

@@ -33,5 +33,21 @@ TEST(Smoothing, OfTheSingerFilterIsThePublishedOne) {
   EXPECT_LT(position.rmse, 53.1 + 2.0 * position.rmse_se);
 }
 
+TEST(Smoothing, TeachesAtLeastHalfOfWhatTheTruthDoes) {
+  const Comparison comparison = run("manoeuvre_2d_no_truth", 100);
+  const auto rmse = [&](const char* tracker, const char* quantity) {
+    return comparison.tracker(tracker)->quantity(quantity)->rmse;
+  };
+  for (const char* quantity : {"position_m", "velocity_mps"}) {
+    for (const char* blind : {"nfnn_no_truth", "nfnn_guess"})
+      EXPECT_GT(rmse("tuned", quantity) - rmse(blind, quantity),
+                0.5 * (rmse("tuned", quantity) - rmse("nfnn", quantity)))
+          << blind << ", " << quantity;
+    EXPECT_GT(rmse("imm6", quantity) - rmse("imm6_nfnn_no_truth", quantity),
+              0.5 * (rmse("imm6", quantity) - rmse("imm6_nfnn", quantity)))
+        << quantity;
+  }
+}
+
 }  // namespace
 }  // namespace truebearing::smoothing_test

@@ -186,6 +186,22 @@ TEST(SmoothingTracker, NeverLooksAcrossTheBeginningOfATrack) {
   EXPECT_LT(records[log.size() + 3].P(0, 0), records_of(*plain, both)[log.size() + 3].P(0, 0));
 }
 
+// Nor where the first measurement of the new track was turned away.
+TEST(SmoothingTracker, NeverLooksAcrossABeginningWithoutAMeasurement) {
+  const FilterTrackerOptions options{.gate_nis = chi_square_quantile(0.999999, 1), .lost_after_s = 10.0};
+  std::vector<Measurement> log = radar_log(9, 20), later = radar_log(10, 20);
+  for (Measurement& measurement : later) measurement.time_s += 100.0;
+  later[0].z[0] = 1e6;
+  std::vector<Measurement> both = log;
+  both.insert(both.end(), later.begin(), later.end());
+  const std::vector<StepRecord> records = smoothed(both, options), alone = smoothed(log, options);
+  expect_same(records, alone, log.size());
+  EXPECT_EQ(records[20].status, StepStatus::rejected);
+  EXPECT_EQ(records[20].track, 1);
+  const auto plain = filter(options);
+  EXPECT_LT(records[20].P(0, 0), records_of(*plain, both)[20].P(0, 0)) << "but it is smoothed by what follows";
+}
+
 // A measurement that only a widened gate lets through is smoothed with the noise that this supposes.
 TEST(SmoothingTracker, AWidenedGateIsSmoothedAcross) {
   std::vector<Measurement> log = radar_log(11, 40);
@@ -213,7 +229,7 @@ TEST(SmoothingTracker, AccountsForWhatItsFilterDid) {
     const StepRecord expected = plain->step(log[k]).front();
     tracker.step(log[k]);
     ASSERT_NE(tracker.account(), nullptr);
-    EXPECT_EQ(tracker.account()->filter_P, expected.P);
+    EXPECT_EQ(tracker.account()->filter_variance, expected.P.diagonal());
     EXPECT_EQ(tracker.account()->nis, expected.innovation->nis);
     EXPECT_EQ(tracker.account()->measured, 1);
     EXPECT_EQ(tracker.account()->looked_back, k + 1 < log.size());

@@ -107,8 +107,8 @@ TEST(SmootherTeacher, TeachesAsOftenAsItKnowsMore) {
   double expected = 0.0, variance = 0.0;
   for (const Known& step : known) {
     if (!step.account.looked_back || step.account.nis > chi_square_quantile(kSurprise, 1)) continue;
-    const double weight = 1.0 - 0.5 * (step.record.P(0, 0) / step.account.filter_P(0, 0) +
-                                       step.record.P(1, 1) / step.account.filter_P(1, 1));
+    const double weight = 1.0 - 0.5 * (step.record.P(0, 0) / step.account.filter_variance[0] +
+                                       step.record.P(1, 1) / step.account.filter_variance[1]);
     expected += weight;
     variance += weight * (1.0 - weight);
   }

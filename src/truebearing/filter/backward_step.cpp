@@ -127,6 +127,25 @@ std::vector<ModeEstimate> all_in_space_of(std::size_t j, const ModeEstimates& es
   return fit;
 }
 
+bool is_estimate(const ModeEstimate& estimate) {
+  return estimate.x.allFinite() && is_covariance(estimate.P);
+}
+
+// Each mode as its pairs with the modes that may follow it, of weights w (r x r), are together.
+std::optional<ModeEstimates> pooled(const ModeEstimates& filtered, const std::vector<std::vector<ModeEstimate>>& pairs,
+                                    const ModeMatrix& w) {
+  ModeEstimates smoothed{{}, w.rowwise().sum() / w.sum()};
+  if (!smoothed.mu.allFinite()) return std::nullopt;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const ModeVector weights = w.row(static_cast<Eigen::Index>(i)).transpose();
+    const double total = weights.sum();
+    const ModeEstimate& own = filtered.modes[i];
+    smoothed.modes.push_back(total > 0.0 ? moments_of(pairs[i], weights / total, own.x.size()) : own);
+    if (!is_estimate(smoothed.modes.back())) return std::nullopt;
+  }
+  return smoothed;
+}
+
 }  // namespace
 
 ModeEstimates estimates_of(const TrackedState& state) {
@@ -179,13 +198,16 @@ std::optional<ModeEstimates> BackwardStep::predicted(const ModeEstimates& filter
 std::optional<ModeEstimates> BackwardStep::smoothed(const ModeEstimates& filtered, double dt_s,
                                                     const ModeEstimates& next, double widened) {
   if (!(dt_s > 0.0)) return next;
-  if (modes() == 1) {
-    std::optional<Crossing> crossing = cross(0, filtered.modes[0], dt_s);
-    if (!crossing) return std::nullopt;
-    crossing->predicted.P *= widened;
-    ModeEstimates smoothed{{looked_back(filtered.modes[0], crossing->predicted, crossing->C, next.modes[0])}, next.mu};
-    return is_covariance(smoothed.modes[0].P) ? std::optional(smoothed) : std::nullopt;
-  }
+  if (modes() > 1) return smoothed_together(filtered, dt_s, next);
+  std::optional<Crossing> crossing = cross(0, filtered.modes[0], dt_s);
+  if (!crossing) return std::nullopt;
+  crossing->predicted.P *= widened;
+  ModeEstimates smoothed{{looked_back(filtered.modes[0], crossing->predicted, crossing->C, next.modes[0])}, next.mu};
+  return is_estimate(smoothed.modes[0]) ? std::optional(smoothed) : std::nullopt;
+}
+
+std::optional<ModeEstimates> BackwardStep::smoothed_together(const ModeEstimates& filtered, double dt_s,
+                                                             const ModeEstimates& next) {
   const ModeMatrix Pi = chain_->transition(dt_s);
   const std::optional<ModeEstimates> predictions = predicted(filtered, dt_s);
   if (!predictions) return std::nullopt;
@@ -214,18 +236,7 @@ std::optional<ModeEstimates> BackwardStep::smoothed(const ModeEstimates& filtere
     const ModeVector weights = (log_weight.array() - log_weight.maxCoeff()).exp();
     w.col(col) = next.mu[col] * weights / weights.sum();
   }
-  ModeEstimates smoothed{{}, w.rowwise().sum()};
-  if (!w.allFinite() || !(smoothed.mu.sum() > 0.0)) return std::nullopt;
-  smoothed.mu /= smoothed.mu.sum();
-  for (std::size_t i = 0; i < modes(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    const double total = w.row(row).sum();
-    smoothed.modes.push_back(total > 0.0
-                                 ? moments_of(pairs[i], w.row(row).transpose() / total, filtered.modes[i].x.size())
-                                 : filtered.modes[i]);
-    if (!smoothed.modes.back().x.allFinite() || !is_covariance(smoothed.modes.back().P)) return std::nullopt;
-  }
-  return smoothed;
+  return pooled(filtered, pairs, w);
 }
 
 }  // namespace truebearing

@@ -58,6 +58,7 @@ class BackwardStep {
   };
 
   std::size_t modes() const { return scratch_.size(); }
+  std::optional<ModeEstimates> smoothed_together(const ModeEstimates& filtered, double dt_s, const ModeEstimates& next);
   std::optional<Crossing> cross(std::size_t mode, const ModeEstimate& estimate, double dt_s);
 
   std::unique_ptr<TrackedState> chain_;                 // asked for its transitions

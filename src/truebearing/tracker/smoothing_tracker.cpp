@@ -13,6 +13,9 @@ SmoothingTracker::SmoothingTracker(std::unique_ptr<FilterTracker> filter, double
   if (filter_->options().output_pull > 0.0 || filter_->options().ahead_s > 0.0)
     throw std::invalid_argument("a smoother is of what a filter estimates, without output_pull or ahead_s");
   if (!(lag_s_ > 0.0)) throw std::invalid_argument("a lag is above 0");
+  for (const ModeEstimate& mode : estimates_of(filter_->state()).modes)
+    lengths_.push_back(static_cast<int>(mode.x.size()));
+  record_.space = &filter_->space();
 }
 
 std::unique_ptr<Tracker> SmoothingTracker::fresh() const {
@@ -40,13 +43,21 @@ std::span<const StepRecord> SmoothingTracker::step(const Measurement& measuremen
   const std::optional<Step>& step = steps_[next_++];
   if (!step) return {};
   account_ = &step->account;
-  return {&step->record, 1};
+  record_.track = step->track;
+  record_.source = step->source;
+  record_.time_s = step->time_s;
+  record_.status = step->status;
+  record_.x = step->x;
+  record_.P = step->P;
+  record_.sensor = step->sensor;
+  if (step->mu.size() > 0) record_.mode_probabilities = step->mu;
+  return {&record_, 1};
 }
 
 void SmoothingTracker::foresee(std::span<const Measurement> measurements) {
   reset();
   for (const Measurement& measurement : measurements) take(measurement);
-  if (lag_s_ == std::numeric_limits<double>::infinity()) {
+  if (lag_s_ == kInfinity) {
     smooth_interval();
   } else {
     for (std::optional<Step>& step : steps_)
@@ -56,9 +67,9 @@ void SmoothingTracker::foresee(std::span<const Measurement> measurements) {
   for (std::optional<Step>& step : steps_) {
     if (!step) continue;
     if (step->is_as_before && before) {
-      step->record.x = before->record.x;
-      step->record.P = before->record.P;
-      step->record.mode_probabilities = before->record.mode_probabilities;
+      step->x = before->x;
+      step->P = before->P;
+      step->mu = before->mu;
       step->account = before->account;
     }
     before = &*step;
@@ -67,9 +78,24 @@ void SmoothingTracker::foresee(std::span<const Measurement> measurements) {
 }
 
 void SmoothingTracker::add_knot(double time_s, bool begins, double widened) {
-  ModeEstimates filtered = estimates_of(filter_->state());
+  const ModeEstimates filtered = estimates_of(filter_->state());
   const bool broken = widened != 1.0 && filtered.modes.size() > 1;
-  knots_.push_back({time_s, std::move(filtered), begins || broken, widened});
+  Knot& knot = knots_.emplace_back(Knot{time_s, {}, filtered.mu, begins || broken, widened});
+  for (const ModeEstimate& mode : filtered.modes) {
+    knot.filtered.insert(knot.filtered.end(), mode.x.begin(), mode.x.end());
+    knot.filtered.insert(knot.filtered.end(), mode.P.data(), mode.P.data() + mode.P.size());
+  }
+}
+
+ModeEstimates SmoothingTracker::filtered(std::size_t knot) const {
+  ModeEstimates estimates{{}, knots_[knot].mu};
+  const double* next = knots_[knot].filtered.data();
+  for (const int n : lengths_) {
+    estimates.modes.push_back(
+        {Eigen::Map<const BoundedVector>(next, n), Eigen::Map<const BoundedMatrix>(next + n, n, n)});
+    next += n + n * n;
+  }
+  return estimates;
 }
 
 void SmoothingTracker::take(const Measurement& measurement) {
@@ -78,24 +104,30 @@ void SmoothingTracker::take(const Measurement& measurement) {
   const std::span<const StepRecord> records = filter_->step(measurement);
   counted_.push_back(filter_->counts());
   const FilterTracker::Passage& passage = filter_->passage();
-  if (passage.used) add_knot(filter_->used_time_s(), passage.begins, passage.widened);
+  if (passage.used)
+    add_knot(filter_->used_time_s(), passage.begins, passage.widened);
+  else if (passage.begins && !filter_->is_lost())  // and then did not use the measurement
+    add_knot(filter_->used_time_s(), true, 1.0);
   std::optional<Step>& step = steps_.emplace_back();
   if (records.empty()) return;
   const StepRecord& record = records.front();
   step.emplace();
-  step->record = record;
-  step->record.prediction.reset();
-  step->record.innovation.reset();
-  step->record.gain.reset();
-  step->account.filter_P = record.P;
+  step->track = record.track;
+  step->source = record.source;
+  step->time_s = record.time_s;
+  step->status = record.status;
+  step->x = record.x;
+  step->P = record.P;
+  if (record.mode_probabilities) step->mu = *record.mode_probabilities;
+  step->sensor = record.sensor;
+  step->account.filter_variance = record.P.diagonal();
   if (record.innovation) {
     step->account.nis = record.innovation->nis;
     step->account.measured = static_cast<int>(record.innovation->nu.size());
   }
   step->is_at_knot = passage.used;
   step->is_as_before = record.status == StepStatus::rejected && !record.prediction;
-  step->can_look_back = !knots_.empty() && !step->is_as_before && record.status != StepStatus::failed &&
-                        (passage.used || !passage.begins);
+  step->can_look_back = !knots_.empty() && !step->is_as_before && record.status != StepStatus::failed;
   if (!knots_.empty()) step->knot = knots_.size() - 1;
 }
 
@@ -107,16 +139,15 @@ bool SmoothingTracker::goes_on(std::size_t knot) const {
 // The smoothed estimate at a knot, from that at the next.
 std::optional<ModeEstimates> SmoothingTracker::passed(std::size_t knot, const ModeEstimates& next) {
   const Knot& to = knots_[knot + 1];
-  return backward_.smoothed(knots_[knot].filtered, to.time_s - knots_[knot].time_s, next, to.widened);
+  return backward_.smoothed(filtered(knot), to.time_s - knots_[knot].time_s, next, to.widened);
 }
 
 // The same at a step behind its knot, from the filter's prediction there.
 std::optional<ModeEstimates> SmoothingTracker::at(const Step& step, const ModeEstimates& next) {
   if (step.is_at_knot) return passed(step.knot, next);
   const Knot &from = knots_[step.knot], &to = knots_[step.knot + 1];
-  const double time_s = step.record.time_s;
-  const std::optional<ModeEstimates> there = backward_.predicted(from.filtered, time_s - from.time_s);
-  return there ? backward_.smoothed(*there, to.time_s - time_s, next, to.widened) : std::nullopt;
+  const std::optional<ModeEstimates> there = backward_.predicted(filtered(step.knot), step.time_s - from.time_s);
+  return there ? backward_.smoothed(*there, to.time_s - step.time_s, next, to.widened) : std::nullopt;
 }
 
 void SmoothingTracker::smooth_interval() {
@@ -129,7 +160,7 @@ void SmoothingTracker::smooth_interval() {
       std::optional<ModeEstimates> smoothed;
       if (goes_on(done)) smoothed = passed(done, next);
       is_smoothed = smoothed.has_value();
-      next = smoothed ? std::move(*smoothed) : knots_[done].filtered;
+      next = smoothed ? std::move(*smoothed) : filtered(done);
     }
   };
   for (std::size_t i = steps_.size(); i-- > 0;) {
@@ -147,12 +178,12 @@ void SmoothingTracker::smooth_interval() {
 
 void SmoothingTracker::smooth_with_lag(Step& step) {
   std::size_t last = step.knot;
-  while (goes_on(last) && knots_[last + 1].time_s <= step.record.time_s + lag_s_) ++last;
+  while (goes_on(last) && knots_[last + 1].time_s <= step.time_s + lag_s_) ++last;
   if (last == step.knot) return;
-  ModeEstimates next = knots_[last].filtered;
+  ModeEstimates next = filtered(last);
   for (std::size_t knot = last; --knot > step.knot;) {
     std::optional<ModeEstimates> smoothed = passed(knot, next);
-    next = smoothed ? std::move(*smoothed) : knots_[knot].filtered;
+    next = smoothed ? std::move(*smoothed) : filtered(knot);
   }
   if (const std::optional<ModeEstimates> smoothed = at(step, next)) write(*smoothed, step);
 }
@@ -161,9 +192,9 @@ void SmoothingTracker::write(const ModeEstimates& smoothed, Step& step) const {
   const ModeEstimate all = mixture_of(smoothed);
   const int n = space().size();
   if (!all.x.allFinite() || !is_covariance(all.P)) return;
-  step.record.x = all.x.head(n);
-  step.record.P = all.P.topLeftCorner(n, n);
-  if (step.record.mode_probabilities) step.record.mode_probabilities = smoothed.mu;
+  step.x = all.x.head(n);
+  step.P = all.P.topLeftCorner(n, n);
+  if (step.mu.size() > 0) step.mu = smoothed.mu;
   step.account.looked_back = true;
 }
 

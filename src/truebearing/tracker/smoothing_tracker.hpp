@@ -11,11 +11,11 @@
 #pragma once
 
 #include <cstddef>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "truebearing/core/constants.hpp"
 #include "truebearing/filter/backward_step.hpp"
 #include "truebearing/tracker/filter_tracker.hpp"
 #include "truebearing/tracker/tracker.hpp"
@@ -24,18 +24,17 @@ namespace truebearing {
 
 /// What a smoother knows of one of its steps beside the record.
 struct SmoothingAccount {
-  bool looked_back = false;                               ///< else the record is the filter's own
-  BoundedMatrix filter_P;                                 ///< (n x n), as the filter published it
-  double nis = std::numeric_limits<double>::quiet_NaN();  ///< of the filter's innovation, where it had one
-  int measured = 0;                                       ///< its components
+  bool looked_back = false;       ///< else the record is the filter's own
+  BoundedVector filter_variance;  ///< (n), the diagonal of P as the filter published it
+  double nis = kNaN;              ///< of the filter's innovation, where it had one
+  int measured = 0;               ///< its components
 };
 
 class SmoothingTracker final : public Tracker {
  public:
   /// lag_s > 0, infinite for the fixed interval. Throws std::invalid_argument where the filter publishes something other
   /// than its estimate: with output_pull or ahead_s.
-  explicit SmoothingTracker(std::unique_ptr<FilterTracker> filter,
-                            double lag_s = std::numeric_limits<double>::infinity());
+  explicit SmoothingTracker(std::unique_ptr<FilterTracker> filter, double lag_s = kInfinity);
 
   std::span<const StepRecord> step(const Measurement& measurement) override;
   void foresee(std::span<const Measurement> measurements) override;
@@ -51,15 +50,23 @@ class SmoothingTracker final : public Tracker {
   const SmoothingAccount* account() const { return account_; }
 
  private:
-  // An estimate after a measurement, or that a track began with.
+  // An estimate after a measurement, or that a track began with. Kept small: a log may be long.
   struct Knot {
     double time_s;
-    ModeEstimates filtered;
+    std::vector<double> filtered;  // x, P of each mode, one after the other
+    ModeVector mu;
     bool begins;  // goes on from no knot before
     double widened;
   };
+  // What its record will be.
   struct Step {
-    StepRecord record;  // its core
+    int track = 0, source = 0;
+    double time_s = 0.0;
+    StepStatus status = StepStatus::ok;
+    BoundedVector x;
+    BoundedMatrix P;
+    ModeVector mu;  // empty of a single filter
+    std::optional<SensorState> sensor;
     SmoothingAccount account;
     std::size_t knot = 0;  // the last at or before it
     bool is_at_knot = false;
@@ -72,6 +79,7 @@ class SmoothingTracker final : public Tracker {
   void smooth_interval();
   void smooth_with_lag(Step& step);
   bool goes_on(std::size_t knot) const;
+  ModeEstimates filtered(std::size_t knot) const;
   std::optional<ModeEstimates> passed(std::size_t knot, const ModeEstimates& next);
   std::optional<ModeEstimates> at(const Step& step, const ModeEstimates& next);
   void write(const ModeEstimates& smoothed, Step& step) const;
@@ -79,6 +87,7 @@ class SmoothingTracker final : public Tracker {
   std::unique_ptr<FilterTracker> filter_;
   double lag_s_;
   BackwardStep backward_;
+  std::vector<int> lengths_;  // of the modes' states
   bool foreseen_ = false;
   std::vector<Knot> knots_;
   std::vector<std::optional<Step>> steps_;  // one per measurement; none before a track exists
@@ -86,6 +95,7 @@ class SmoothingTracker final : public Tracker {
   std::size_t next_ = 0;                    // measurement
   TrackerCounts counts_;
   const SmoothingAccount* account_ = nullptr;
+  StepRecord record_;
 };
 
 }  // namespace truebearing

@@ -99,7 +99,8 @@ TEST(Sensors, MistakesSayWhatWouldBeRight) {
               AllOf(HasSubstr("rader"), HasSubstr("radar")));
   EXPECT_THAT(error_of(kScenario + kSensors + kTracker + "gate_probability = 0.99\n"),
               AllOf(HasSubstr("gate_probability"), HasSubstr("[sensors.NAME]")));
-  EXPECT_THAT(error_of(kScenario + kSensors + "sigma_mm = 1.0\n" + kTracker), HasSubstr("sigma_mm"));
+  EXPECT_THAT(error_of(kScenario + kSensors + "sigma_mm = 1.0\n" + kTracker),
+              AllOf(HasSubstr("sensors.plots"), HasSubstr("sigma_mm"), HasSubstr("sigma_m")));
   const std::string other = "[sensors.plots]\nmodel = \"position\"\nsigma_m = 10.0\n";
   EXPECT_THAT(error_of(kScenario + other + kTracker),
               AllOf(HasSubstr("both"), HasSubstr("the scenario gives"), HasSubstr("radar: range_m, bearing_deg")));

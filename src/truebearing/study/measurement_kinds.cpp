@@ -254,8 +254,13 @@ struct OneSensor {
 
 OneSensor read_sensor(TableReader table, const StateSpace& space, double factor) {
   const MeasurementKind& kind = read_kind(table, false);
-  if (std::find(kind.spaces.begin(), kind.spaces.end(), "plane") == kind.spaces.end())
-    throw table.error("model", fmt::format("is \"{}\", which has no meaning in the plane", kind.model));
+  const auto is_of = [&](const std::string& name) {
+    return std::find(kind.spaces.begin(), kind.spaces.end(), name) != kind.spaces.end();
+  };
+  // With the frequency of a source behind it a state in the plane is one still.
+  if (!is_of(space.name) && !(space == plane_frequency_space() && is_of("plane")))
+    throw table.error("model", fmt::format("is \"{}\", which has no meaning in the space {}", kind.model, space.name),
+                      fmt::format("the space {}", fmt::join(kind.spaces, ", ")));
   OneSensor one{without_bias(table, kind.read({table, space, factor})), kInfinity};
   if (table.has("gate_probability"))
     one.gate_nis = chi_square_quantile(table.number("gate_probability", kGate), one.sensor->size());
@@ -273,14 +278,18 @@ std::vector<std::string> sorted_names(const TableReader& sensors) {
 MeasurementChoice read_sensors(TableReader& tracker, TableReader& table, double factor) {
   const std::optional<TableReader> found = table.table_if_present(kSensors);
   if (!found) throw table.error("model", "is \"sensors\"", "tables [sensors.NAME] in the study");
-  TableReader sensors = *found;
+  TableReader sensors(found->raw(), table.file(), kSensors);  // as the study has them
+  if (sensors.keys().empty() || sensors.keys().size() > kMostSensors)
+    throw sensors.error("", fmt::format("names {} of them", sensors.keys().size()),
+                        fmt::format("1 to {}", kMostSensors));
   const std::vector<std::string> names = sorted_names(sensors);
   const std::vector<std::string> used = table.has("use") ? table.texts("use") : names;
   for (const std::string& name : used)
     if (std::find(names.begin(), names.end(), name) == names.end())
       throw table.error("use", "names no sensor: \"" + name + "\"", suggestion(name, names));
   if (used.empty()) throw table.error("use", "is empty", fmt::format("{}", fmt::join(names, ", ")));
-  const StateSpace& space = *find_state_space(tracker.choice_or("space", {"plane", "plane_frequency"}, "plane"));
+  const StateSpace& space =
+      *find_state_space(tracker.choice_or("space", {"plane", "plane_frequency", "space"}, "plane"));
   std::vector<SeveralSensors::Part> parts;
   std::vector<double> gates;
   for (const std::string& name : names) {
@@ -315,13 +324,6 @@ MeasurementChoice read_measurement(TableReader& tracker, double factor) {
 bool measures(const TableReader& tracker, const std::string& model) {
   const toml::table* measurement = (*tracker.raw())["measurement"].as_table();
   return measurement && (*measurement)["model"].value_or(std::string()) == model;
-}
-
-void check_sensors(TableReader sensors) {
-  const std::vector<std::string> names = sorted_names(sensors);
-  if (names.empty() || names.size() > kMostSensors)
-    throw sensors.error("", fmt::format("names {} of them", names.size()), fmt::format("1 to {}", kMostSensors));
-  for (const std::string& name : names) read_sensor(sensors.table(name), plane_frequency_space(), 1.0);
 }
 
 BearingFrequencySensor read_bearing_frequency_sensor(TableReader& tracker) {

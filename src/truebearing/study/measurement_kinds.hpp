@@ -32,9 +32,6 @@ struct MeasurementChoice {
 /// gate_probability, ... } }, of which a study fills in `sensors` from its own table of that name. Throws InputError.
 MeasurementChoice read_measurement(TableReader& tracker, double factor = 1.0);
 
-/// A study's table [sensors.NAME], by itself. Throws InputError.
-void check_sensors(TableReader sensors);
-
 /// Does the tracker's `measurement` say this model?
 bool measures(const TableReader& tracker, const std::string& model);
 

@@ -6,7 +6,6 @@
 
 #include "truebearing/io/file.hpp"
 #include "truebearing/study/configuration_text.hpp"
-#include "truebearing/study/measurement_kinds.hpp"
 #include "truebearing/study/published_rows.hpp"
 #include "truebearing/tracker/step_log_scenario.hpp"
 
@@ -36,14 +35,13 @@ Study Study::load(const std::filesystem::path& path) {
 
 void Study::read(const StudyFile& file) {
   TableReader reader(file.table, path_.string());
-  for (const char* elsewhere : {"like", "trackers"}) reader.node(elsewhere);
+  for (const char* elsewhere : {"like", "trackers", "sensors"}) reader.node(elsewhere);
   name_ = reader.text("name");
   const toml::node* scenario = reader.node("scenario");
   const bool is_inside = scenario && scenario->is_table();
   scenario_file_ = is_inside ? path_.string() : reader.resolve(reader.text("scenario")).string();
   scenario_table_ = is_inside ? reader.table("scenario").raw() : read_toml_file(scenario_file_);
   scenario_ = read_scenario(TableReader(scenario_table_, scenario_file_, is_inside ? "scenario" : ""), kMoreScenarios);
-  if (auto sensors = reader.table_if_present("sensors")) check_sensors(std::move(*sensors));
   if (auto recorded = reader.table_if_present("recorded")) recorded_ = read_recorded_spec(std::move(*recorded));
   if (auto log = reader.table_if_present("log")) log_ = read_log_table(std::move(*log));
   if (auto sets = reader.table_if_present("sets"))

@@ -20,6 +20,7 @@
 
 #include "truebearing/core/printable.hpp"
 #include "truebearing/core/suggestion.hpp"
+#include "truebearing/io/json_lines.hpp"
 
 namespace truebearing {
 namespace {
@@ -99,6 +100,7 @@ std::unique_ptr<std::istream> open_file(const std::filesystem::path& path) {
   if (std::filesystem::is_directory(path, unknown)) throw InputError(path.string(), "is a directory", "a CSV file");
   auto file = std::make_unique<std::ifstream>(path, std::ios::binary);
   if (!*file) throw InputError(path.string(), fmt::format("cannot be opened: {}", std::strerror(errno)));
+  if (is_json_lines(path)) return std::make_unique<std::istringstream>(csv_of_json_lines(*file, path.string()));
   return file;
 }
 
@@ -107,7 +109,8 @@ std::unique_ptr<std::istream> open_file(const std::filesystem::path& path) {
 CsvReader::CsvReader(const std::filesystem::path& path)
     : file_(open_file(path)),
       stream_(file_ ? file_.get() : &std::cin),
-      name_(file_ ? path.string() : "standard input") {
+      name_(file_ ? path.string() : "standard input"),
+      next_line_(is_json_lines(path) ? 0 : 1) {  // whose first line is a row
   read_header();
 }
 

@@ -21,7 +21,8 @@ namespace truebearing {
 
 class CsvReader {
  public:
-  /// Opens a file, or standard input where the path is "-", and reads the header. Throws InputError, as all members do.
+  /// Opens a file, or standard input where the path is "-", and reads the header. A file of JSON lines (json_lines.hpp) is
+  /// read as the table that says the same. Throws InputError, as all members do.
   explicit CsvReader(const std::filesystem::path& path);
   /// The same for a stream that outlives the reader; `name` stands for the file in messages.
   CsvReader(std::istream& stream, std::string name);

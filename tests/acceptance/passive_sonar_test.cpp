@@ -107,5 +107,20 @@ TEST(PassiveSonar, CorrectionsOfTheTurnReachTheirBars) {
   }
 }
 
+// 40 of the 1000 runs that its study has.
+TEST(PassiveSonar, TheLimitOfTheTurnIsBelowItsTrackersAndKnowsHowWellItKnows) {
+  const Study study = load_study("passive_sonar_turns_limit");
+  TrackerSet trackers(study.make_ensemble({"ct9", "limit"}));
+  for (const char* name : {"ct9", "limit"}) trackers.show_member(name);
+  ComparisonOptions options = study.comparison_options();
+  options.runs = 40;
+  options.seed = 20;
+  options.pairs = {{"limit", "ct9"}};
+  const Comparison comparison = compare(trackers, study.evaluation_scenarios(), options);
+  expect_better(comparison, "limit", "ct9", "velocity_mps");
+  EXPECT_GT(comparison.tracker("limit")->coverage95, 0.92);
+  EXPECT_LT(comparison.tracker("limit")->coverage95, 0.98);
+}
+
 }  // namespace
 }  // namespace truebearing::passive_sonar_test

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/support/error_message.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "truebearing/study/study.hpp"
@@ -82,6 +84,63 @@ TEST(ParticleLimitKind, RefusesWhatItDoesNotModel) {
               kLimit),
       AllOf(HasSubstr("planar flights"), HasSubstr("\"planar_flight\"")));
   EXPECT_THAT(refusal(study_of("plane", kSensor, "partcles = 7\n")), HasSubstr("did you mean \"particles\""));
+}
+
+const std::string kSource =
+    "duration_s = 700.0\nown_ship = { speed_mps = 5.0, course_deg = 0.0, turns = [{ time_s = 200.0, by_deg = 90.0 }] }\n"
+    "source = { frequency_hz = 120.0 }\n";
+const std::string kTurn =
+    "turns = [{ time_s = { uniform = [400.0, 500.0] }, by_deg = { uniform = [20.0, 90.0] }, "
+    "rate_degps = 1.0, share = 0.85, either_side = true }]";
+
+std::string sonar_study(const std::string& turns = kTurn, const std::string& limit = "hand_over_s = 350.0\n",
+                        const std::string& source = kSource, const std::string& sensor = {}) {
+  return "name = \"small\"\n[scenario]\nkind = \"passive_sonar\"\nperiod_s = 7.0\n" + source +
+         "target = { range_m = 6000.0, bearing_deg = 40.0, speed_mps = 4.0, course_deg = 200.0" +
+         (turns.empty() ? "" : ", " + turns) + " }\nsensor = { bearing_sigma_deg = 1.0, frequency_sigma_hz = 0.02" +
+         sensor + " }\n[trackers.limit]\nkind = \"particle_limit\"\nparticles = 100\n" + limit +
+         "measurement = { model = \"bearing_frequency\", bearing_sigma_deg = 1.0, frequency_sigma_hz = 0.02 }\n"
+         "batch = { method = \"map\", prior = { kind = \"velocity\", velocity_sigma_mps = 3.0 } }\n";
+}
+
+TEST(ParticleLimitKind, IsABoundOfASourceThatTurnsOnce) {
+  const Loaded loaded(sonar_study());
+  EXPECT_THAT(loaded.study.bounds(), ElementsAre("limit"));
+  EXPECT_EQ(loaded.study.note(), "");
+  const auto tracker = loaded.study.make_tracker("limit");
+  const Recording run = loaded.study.scenario().simulate({});
+  for (const Measurement& measurement : run.measurements) {
+    const auto records = tracker->step(measurement);
+    const bool follows = !records.empty() && records[0].mode_probabilities;
+    EXPECT_EQ(follows, measurement.time_s > 350.0) << measurement.time_s;
+  }
+  EXPECT_TRUE(std::any_of(tracker->events().begin(), tracker->events().end(),
+                          [](const TrackEvent& event) { return event.kind == TrackEvent::Kind::handed_over; }));
+}
+
+TEST(ParticleLimitKind, RefusesATurnThatItDoesNotModel) {
+  EXPECT_THAT(refusal(sonar_study("")), AllOf(HasSubstr("trackers.limit"), HasSubstr("does not turn once")));
+  EXPECT_THAT(refusal(sonar_study("turns = [{ time_s = 400.0, to_deg = 90.0 }]")), HasSubstr("not by an angle"));
+  EXPECT_THAT(refusal(sonar_study("turns = [{ time_s = 400.0, by_deg = -40.0 }]")), HasSubstr("not by an angle"));
+  EXPECT_THAT(refusal(sonar_study(kTurn, "hand_over_s = 450.0\n")),
+              AllOf(HasSubstr("hand_over_s"), HasSubstr("is 450"), HasSubstr("before the first turn, 400 s")));
+  const std::string jumps =
+      "duration_s = 700.0\nown_ship = { speed_mps = 5.0, course_deg = 0.0 }\n"
+      "source = { frequency_hz = 120.0, changes = [{ time_s = 500.0, by_hz = 5.0 }] }\n";
+  EXPECT_THAT(refusal(sonar_study(kTurn, "hand_over_s = 350.0\n", jumps)), HasSubstr("changes its frequency"));
+  EXPECT_THAT(
+      refusal(sonar_study(kTurn, "hand_over_s = 350.0\n", kSource, ", outlier_share = 0.1, outlier_factor = 5.0")),
+      HasSubstr("sensor has outliers"));
+  std::string deaf = sonar_study();
+  deaf.replace(deaf.rfind("bearing_frequency"), 17, "bearing");
+  deaf.erase(deaf.rfind(", frequency_sigma_hz"), std::string(", frequency_sigma_hz = 0.02").size());
+  EXPECT_THAT(refusal(deaf),
+              AllOf(HasSubstr("measurement"), HasSubstr("of no source"), HasSubstr("bearing_frequency")));
+  const std::string silent = "duration_s = 700.0\nown_ship = { speed_mps = 5.0, course_deg = 0.0 }\n";
+  std::string bearings = sonar_study(kTurn, "hand_over_s = 350.0\n", silent);
+  bearings.replace(bearings.find("passive_sonar"), 13, "bearings_only");
+  bearings.erase(bearings.find(", frequency_sigma_hz"), std::string(", frequency_sigma_hz = 0.02").size());
+  EXPECT_THAT(refusal(bearings), HasSubstr("target is no source"));
 }
 
 TEST(ParticleLimitKind, KnowsNoFlightsOfIntervals) {

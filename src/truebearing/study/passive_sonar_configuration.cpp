@@ -28,6 +28,10 @@ std::unique_ptr<Tracker> make_part(TableReader& table, const std::string& part, 
 }  // namespace
 
 std::unique_ptr<Tracker> make_passive_sonar_tracker(TableReader& table) {
+  return make_passive_sonar_with(table, nullptr);
+}
+
+std::unique_ptr<Tracker> make_passive_sonar_with(TableReader& table, std::unique_ptr<Successor> given) {
   PassiveSonarOptions options;
   options.hand_over_s = table.number("hand_over_s", kNonNegative);
   options.hand_over_percent = table.number_or("hand_over_percent", options.hand_over_percent, kPositive);
@@ -38,6 +42,7 @@ std::unique_ptr<Tracker> make_passive_sonar_tracker(TableReader& table) {
   if (measures(table, "bearing_frequency")) options.sensor = read_bearing_frequency_sensor(table);
 
   std::unique_ptr<Tracker> batch = make_part(table, "batch", toml::table{{"kind", "bearings_batch"}, {"method", "ml"}});
+  if (given) return std::make_unique<PassiveSonarTracker>(std::move(options), std::move(batch), std::move(given));
   std::unique_ptr<Tracker> filter =
       make_part(table, "filter", toml::table{{"start", toml::table{{"kind", "hand_over"}}}});
   auto* successor = dynamic_cast<Successor*>(filter.get());

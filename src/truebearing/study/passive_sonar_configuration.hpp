@@ -9,10 +9,13 @@
 #include <memory>
 
 #include "truebearing/io/table_reader.hpp"
+#include "truebearing/tracker/successor.hpp"
 #include "truebearing/tracker/tracker.hpp"
 
 namespace truebearing {
 
 std::unique_ptr<Tracker> make_passive_sonar_tracker(TableReader& table);
+/// The same with a filter that is made already; the table has no `filter`.
+std::unique_ptr<Tracker> make_passive_sonar_with(TableReader& table, std::unique_ptr<Successor> filter);
 
 }  // namespace truebearing

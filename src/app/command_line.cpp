@@ -81,6 +81,7 @@ int command_line(int argc, const char* const* argv) {
   add_report(all);
   add_check(all);
   add_rules(all);
+  add_export(all);
   add_tma(all);
   occupy_standard_streams();
   std::ios::sync_with_stdio(false);  // of standard input is known then what has come

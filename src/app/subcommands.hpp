@@ -17,6 +17,7 @@ void add_compare(const Subcommands& all);
 void add_report(const Subcommands& all);
 void add_check(const Subcommands& all);
 void add_rules(const Subcommands& all);
+void add_export(const Subcommands& all);
 void add_tma(const Subcommands& all);
 
 }  // namespace truebearing

@@ -181,7 +181,7 @@ TEST(Teacher, DrawsItsOwnRoleOnly) {
 
 // A base that says `told` of targets by their angles; its NIS is the square of what it says, in degrees.
 TeacherSet teach(const testing::AnglesOfTracks& told, const Recording& recording,
-                 const std::vector<std::pair<std::string, double>>& leave_out_beyond = {}) {
+                 const std::vector<std::pair<std::string, double>>& leave_out_beyond = {}, bool whole_tracks = false) {
   Ensemble ensemble;
   ensemble.add("told", testing::told_tracker(told));
   CorrectionSpec correction;
@@ -189,7 +189,9 @@ TeacherSet teach(const testing::AnglesOfTracks& told, const Recording& recording
   correction.design.features = {{.kind = FeatureKind::log_step}, {.kind = FeatureKind::log_mean_nis, .offset = 1.0}};
   correction.training.runs = 2;
   correction.training.leave_out_beyond = leave_out_beyond;
-  return collect_teacher_set(ensemble, correction, FakeScenario(recording), {});
+  TeacherOptions options;
+  options.whole_tracks = whole_tracks;
+  return collect_teacher_set(ensemble, correction, FakeScenario(recording), options);
 }
 
 void expect_labels(const TeacherSet& set, const std::vector<double>& wanted_deg) {
@@ -212,6 +214,21 @@ TEST(Teacher, FeaturesRememberEveryTrackByItself) {
   EXPECT_EQ(set.X(3, 0), std::log(2.0)) << "features see the steps that are not taught";
   EXPECT_NEAR(set.X(2, 1), std::log(1.0 + (1.0 + 4.0 + 9.0) / 3.0), 1e-12);
   EXPECT_NEAR(set.X(3, 1), std::log(1.0 + (400.0 + 1600.0) / 2.0), 1e-12);
+}
+
+TEST(Teacher, WholeTracksOfSeveralTargetsComeOneBehindTheOther) {
+  const Recording recording = testing::angle_recording({{0, {0, 0, 0}}, {1, {30, 30, 30}}});
+  const TeacherSet set = teach({{0, {1, 2, 9}}, {1, {kNaN, 31, 32}}}, recording, {{"angle_deg", 3.0}}, true);
+  const std::vector<bool> begins{true, false, false, true, false}, taught{true, true, false, true, true};
+  ASSERT_EQ(set.rows(), 10) << "two runs";
+  for (std::size_t i = 0; i < 10; ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    EXPECT_EQ(set.begins[i], begins[i % 5]) << i;
+    EXPECT_EQ(set.taught[i], taught[i % 5]) << i;
+    EXPECT_TRUE(set.used[i]) << "what is too far off to be taught is remembered: " << i;
+    EXPECT_EQ(set.X(row, 0), std::log(static_cast<double>(i % 5 < 3 ? i % 5 + 1 : i % 5 - 2))) << i;
+  }
+  EXPECT_NEAR(degrees(set.Y(4, 0)), -2.0, 1e-12);
 }
 
 TEST(Teacher, LeavesOutStepsWithErrorsBeyondTheLimit) {

@@ -82,23 +82,36 @@ TEST(ArrayAngles, CorrectionsOfAngleAndRateReachTheirBars) {
     const Study study = load_study(name);
     TrackerSet trackers(study.make_ensemble({"joint", "lag_fixed"}));
     for (const char* base : {"joint", "lag_fixed"}) trackers.show_member(base);
-    for (const char* tracker : {"joint_nfnn", "lag_fixed_nfnn"})
+    for (const char* tracker : {"joint_nfnn", "joint_gru", "lag_fixed_nfnn"})
       trackers.show_correction(tracker, study.load_model(tracker), study.tracker(tracker).correction->bounds);
     ComparisonOptions options = study.comparison_options();
     options.runs = runs;
     options.seed = 20;
+    options.pairs.emplace_back("joint_gru", "joint_nfnn");
     return compare(trackers, study.evaluation_scenarios(), options);
   };
-  expect_below(corrected("array_a_0db", 60), "joint_nfnn", "clean_mse", 0.029);
-  expect_below(corrected("array_a_10db", 60), "joint_nfnn", "clean_mse", 0.0042);
+  const struct {
+    const char* study;
+    double nfnn, gru, gru_nees;
+  } of_the_paper[] = {{"array_a_0db", 0.029, 0.0225, 2.3}, {"array_a_10db", 0.0042, 0.0034, 2.5}};
+  for (const auto& [study, nfnn, gru, gru_nees] : of_the_paper) {
+    SCOPED_TRACE(study);
+    const Comparison comparison = corrected(study, 60);
+    expect_below(comparison, "joint_nfnn", "clean_mse", nfnn);
+    expect_below(comparison, "joint_gru", "clean_mse", gru);
+    EXPECT_GT(comparison.tracker("joint_gru")->nees, 1.7);
+    EXPECT_LT(comparison.tracker("joint_gru")->nees, gru_nees);
+  }
   for (const char* study : {"array_random_0db", "array_random_10db"}) {
     const Comparison comparison = corrected(study, 120);
     for (const char* quantity : {"angle_deg2_clean", "rate_degps2_clean"}) {
       SCOPED_TRACE(study);
       expect_better(comparison, "joint_nfnn", "joint", quantity);
+      expect_better(comparison, "joint_gru", "joint_nfnn", quantity);
       expect_better(comparison, "lag_fixed_nfnn", "lag_fixed", quantity);
     }
-    EXPECT_GT(comparison.tracker("joint_nfnn")->coverage95, 0.9) << study;
+    for (const char* tracker : {"joint_nfnn", "joint_gru"})
+      EXPECT_GT(comparison.tracker(tracker)->coverage95, 0.9) << study << ' ' << tracker;
   }
 }
 

@@ -23,6 +23,7 @@
 #include "app/track_report.hpp"
 #include "truebearing/array/recorded_array.hpp"
 #include "truebearing/core/constants.hpp"
+#include "truebearing/evaluation/foretelling.hpp"
 #include "truebearing/evaluation/late_rows.hpp"
 #include "truebearing/evaluation/report.hpp"
 #include "truebearing/evaluation/time_steps.hpp"
@@ -48,6 +49,7 @@ struct TrackArguments {
   std::string events;
   LogArguments reading;
   double late_s = -1.0;  // not given
+  int foretold = 0;      // steps ahead; 0: nothing is
   ReportArguments report;
   bool smooth = false;
   double lag_s = kInfinity;  ///< of `smooth`
@@ -279,12 +281,26 @@ void write_log_results(const Study& study, const TrackArguments& options, const 
   if (!options.report.svg.empty()) write_plots(options.report.svg, log_plot_files(json, options.log));
 }
 
+// Of each log, in the trackers' time.
+void say_who_foretells(const TrackArguments& options, const TrackRun& run, const KeptLogs& logs) {
+  for (const auto& [number, recording] : logs) {
+    Recording timed = recording;
+    for (Measurement& measurement : timed.measurements) measurement.time_s -= run.contents().epoch_s;
+    const std::string text = foretelling_text(foretell(run.trackers(), timed, options.foretold));
+    if (options.only_text_for_programs())
+      say(text);
+    else
+      fmt::print("\n{}", text);
+  }
+}
+
 // logs: what is to be scored, or told of where it has no truth; empty where neither is wanted.
 void finish(const Study& study, const TrackArguments& options, TrackRun& run, const Recording::Counts& rows,
             KeptLogs logs) {
   const bool for_people = !options.only_text_for_programs();
   if (for_people) report(study, options, run, rows);
   for (const std::string& line : consistency_warnings(run.all())) say("truebearing: " + line);
+  if (options.foretold > 0) say_who_foretells(options, run, logs);
   std::vector<Recording> tracks;
   for (auto& [number, recording] : logs)
     if (recording.truth_space) tracks.push_back(std::move(recording));
@@ -364,7 +380,8 @@ void track_rows(const Study& study, const TrackArguments& options) {
   MeasurementLog reader(with_names(CsvReader(std::filesystem::path(options.log)), reading), reading);
   check_measured(reader.measured(), study.scenario(), options.log);
   // Whoever is only given the records needs no scores, and the log has no end that could be waited for.
-  const bool keeps = options.wants_results() || (reader.truth_space() && !options.only_text_for_programs());
+  const bool keeps =
+      options.foretold > 0 || options.wants_results() || (reader.truth_space() && !options.only_text_for_programs());
   TrackRun run(study, options, static_cast<int>(reader.measured().size()), reading);
   Recording recording;
   std::vector<Measurement> all;  // where a tracker wants to know them beforehand
@@ -452,6 +469,11 @@ void add_track(const Subcommands& all) {
       .argument("--late", options->late_s,
                 "take rows as they come, and those that are up to so many seconds late where they belong, by running "
                 "the steps after them again")
+      .non_negative();
+  command
+      .argument("--foretell", options->foretold,
+                "hold what trackers foretell of measurements that are hidden from them, so many steps ahead, against "
+                "these: who is better without a truth")
       .non_negative();
   command.runs([options] { track(*options); });
 }

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scores without truth, by measurements that trackers have not seen: of a log n are shown and n hidden in turn, and
+// what a tracker foretells of the last hidden one, n steps ahead, is held against it. Then the other half is hidden. The
+// measurements' own noise is in every error alike, so that the differences are the trackers'.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "truebearing/evaluation/statistics.hpp"
+#include "truebearing/evaluation/tracker_set.hpp"
+#include "truebearing/recording/recording.hpp"
+
+namespace truebearing {
+
+struct Foretelling {
+  int steps = 1;
+  std::string
+      quantity;  ///< "position_m" of measured places, as they are or by range and bearing; else "bearing_deg", ...
+  std::size_t foretold = 0;  ///< measurements that all trackers had an estimate for
+
+  struct Tracker {
+    std::string name;
+    Estimate rmse;  ///< of the foretold measurement; standard error by leaving out stretches of the log
+    /// Mean squared error less that of the best; 0 of the best itself.
+    Estimate above_best;
+  };
+  std::vector<Tracker> trackers;
+  std::size_t best = 0;  ///< of the trackers
+};
+
+/// How far a record is from a measurement of those components: in m of a place on the line, in the plane or in space, of
+/// a range or by range and bearing from where the sensor was, else in degrees of a bearing; nothing of others. `quantity`
+/// becomes its name.
+std::optional<double> miss(const std::vector<std::string>& components, const Measurement& measurement,
+                           const StepRecord& record, std::string& quantity);
+
+/// Throws InputError where nothing is foretold that could be compared: of several targets, of arrays, of short logs.
+Foretelling foretell(const TrackerSet& trackers, const Recording& recording, int steps);
+
+/// As a table, and who foretells best in a sentence.
+std::string foretelling_text(const Foretelling& foretelling);
+
+}  // namespace truebearing

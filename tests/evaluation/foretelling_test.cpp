@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "truebearing/evaluation/foretelling.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "tests/support/error_message.hpp"
+#include "truebearing/core/angle.hpp"
+#include "truebearing/core/random.hpp"
+#include "truebearing/filter/erased_motion.hpp"
+#include "truebearing/filter/filter_kinds.hpp"
+#include "truebearing/motion/constant_velocity.hpp"
+#include "truebearing/tracker/filter_tracker.hpp"
+#include "truebearing/tracker/position_sensor.hpp"
+
+namespace truebearing::foretelling_test {
+namespace {
+
+using ::testing::AllOf;
+using testing::error_message;
+using ::testing::HasSubstr;
+
+std::unique_ptr<Tracker> filter(double sigma_a_mps2) {
+  return std::make_unique<FilterTracker>(
+      plane_space(),
+      make_filter_state(FilterKind::kalman, erased(ConstantVelocity<2, DiscreteWhiteNoise>{{sigma_a_mps2}})),
+      sensor_of(PositionSensor<2>{{50.0, 50.0}}), TwoPointStart{}, FilterTrackerOptions{});
+}
+
+TrackerSet trackers(double first_mps2, double second_mps2) {
+  Ensemble ensemble;
+  ensemble.add("first", filter(first_mps2));
+  ensemble.add("second", filter(second_mps2));
+  TrackerSet set(std::move(ensemble));
+  set.show_member("first");
+  set.show_member("second");
+  return set;
+}
+
+// A target on a straight line.
+Recording recording(int steps = 400) {
+  RandomStream random({11, Role::evaluation, 0}, StreamId::test);
+  Recording log;
+  log.measured = Measured::position(2).components;
+  for (int k = 0; k < steps; ++k)
+    log.measurements.push_back({.time_s = double(k),
+                                .z = Eigen::Vector2d(100.0 * k + 50.0 * random.normal(), 50.0 * random.normal()),
+                                .sigma = {},
+                                .sensor = {}});
+  return log;
+}
+
+TEST(Foretelling, TheFilterThatSuitsTheTargetForetellsBest) {
+  for (const int steps : {1, 5}) {
+    const Foretelling told = foretell(trackers(30.0, 0.1), recording(), steps);
+    EXPECT_EQ(told.best, 1u);
+    EXPECT_EQ(told.quantity, "position_m");
+    EXPECT_GT(told.trackers[0].above_best.value, 3.0 * told.trackers[0].above_best.se);
+    // No better than the measurement that is foretold.
+    EXPECT_GT(told.trackers[1].rmse.value, 50.0);
+    EXPECT_NEAR(static_cast<double>(told.foretold), 400.0 / steps, 3.0);
+    EXPECT_THAT(foretelling_text(told), AllOf(HasSubstr("second foretells best"), HasSubstr("below first")));
+  }
+}
+
+TEST(Foretelling, EqualTrackersForetellAlike) {
+  EXPECT_THAT(foretelling_text(foretell(trackers(1.0, 1.0), recording(), 2)), HasSubstr("no difference can be told"));
+}
+
+// What is hidden leaves no trace: a wild value among the hidden moves its own error alone.
+TEST(Foretelling, TrackersDoNotSeeWhatTheyForetell) {
+  Recording log = recording(40);
+  const Foretelling before = foretell(trackers(1.0, 5.0), log, 1);
+  const double sum = std::pow(before.trackers[0].rmse.value, 2.0) * static_cast<double>(before.foretold);
+  log.measurements[39].z[0] += 1e6;  // the last: nothing is foretold from it
+  const Foretelling after = foretell(trackers(1.0, 5.0), log, 1);
+  EXPECT_NEAR(std::pow(after.trackers[0].rmse.value, 2.0) * static_cast<double>(after.foretold), sum + 1e12, 1e9);
+}
+
+TEST(Foretelling, MissesAreDistancesOrAngles) {
+  StepRecord record;
+  record.space = &plane_space();
+  record.x = Eigen::Vector4d(3000.0, 4000.0, 0.0, 0.0);
+  Measurement measurement;
+  std::string quantity;
+  const auto of = [&](const std::vector<std::string>& components, const BoundedVector& z) {
+    measurement.z = z;
+    return miss(components, measurement, record, quantity).value_or(-1.0);
+  };
+  EXPECT_NEAR(of({"east_m", "north_m"}, Eigen::Vector2d(3030.0, 4040.0)), 50.0, 1e-9);
+  EXPECT_EQ(quantity, "position_m");
+  const double bearing_rad = std::atan2(3000.0, 4000.0);
+  EXPECT_NEAR(of({"range_m", "bearing_deg"}, Eigen::Vector2d(5030.0, bearing_rad + 0.008)), 50.0, 1e-9);
+  EXPECT_NEAR(of({"bearing_deg"}, BoundedVector::Constant(1, bearing_rad - 2.0 * kPi + radians(0.5))), 0.5, 1e-9);
+  EXPECT_EQ(quantity, "bearing_deg");
+  measurement.sensor = SensorState{Eigen::Vector2d(3000.0, 0.0), Eigen::Vector2d::Zero()};
+  EXPECT_NEAR(of({"range_m"}, BoundedVector::Constant(1, 4010.0)), 10.0, 1e-9);
+  EXPECT_EQ(of({"frequency_hz"}, BoundedVector::Constant(1, 300.0)), -1.0);
+}
+
+TEST(Foretelling, ShortLogsAreRefused) {
+  EXPECT_THAT(error_message([&] { foretell(trackers(1.0, 2.0), recording(5), 2); }),
+              AllOf(HasSubstr("2 steps ahead"), HasSubstr("4 or more")));
+}
+
+}  // namespace
+}  // namespace truebearing::foretelling_test

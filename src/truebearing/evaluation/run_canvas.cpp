@@ -20,7 +20,8 @@ int place_of(const std::vector<std::string>& names, const std::string& name) {
 
 }  // namespace
 
-RunCanvas::RunCanvas(const StateSpace& space) : space_(space), plane_(begins_in_plane(space)) {
+RunCanvas::RunCanvas(const StateSpace& space)
+    : space_(space), plane_(begins_in_plane(space) || space == space_space()) {
   component_ = space.components.front();
   for (const Quantity& quantity : space.quantities)
     if (quantity.indices == std::vector<int>{0}) {
@@ -56,6 +57,7 @@ void RunCanvas::add_measured(const Recording& recording, RunPicture& picture) co
     const std::vector<std::string>& measured = components_of(recording, measurement);
     const int east = place_of(measured, "east_m"), north = place_of(measured, "north_m");
     const int range = place_of(measured, "range_m"), bearing = place_of(measured, "bearing_deg");
+    const int elevation = place_of(measured, "elevation_deg");
     const int value = place_of(measured, component_);
     const bool sights = plane_ && bearing >= 0 && range < 0;
     const SensorState sensor = measurement.sensor.value_or(SensorState{});
@@ -66,8 +68,9 @@ void RunCanvas::add_measured(const Recording& recording, RunPicture& picture) co
       add(measurement.time_s, at, picture.own_ship);
       picture.bearing_deg.push_back(degrees(z(bearing)));
     } else if (plane_ && range >= 0 && bearing >= 0) {
-      at << sensor.position_m.x() + z(range) * std::sin(z(bearing)),
-          sensor.position_m.y() + z(range) * std::cos(z(bearing));
+      const double ground_m = elevation >= 0 ? z(range) * std::cos(z(elevation)) : z(range);
+      at << sensor.position_m.x() + ground_m * std::sin(z(bearing)),
+          sensor.position_m.y() + ground_m * std::cos(z(bearing));
       add(measurement.time_s, at, picture.measured);
     } else if (plane_ && east >= 0 && north >= 0) {
       at << z(east), z(north);

@@ -10,7 +10,7 @@
 
 namespace truebearing {
 
-/// In the plane where the space begins with one, else its first component over time.
+/// In the plane where the space begins with one, of a target in space along the ground, else its first component over time.
 class RunCanvas {
  public:
   /// The space must outlive it.

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "truebearing/evaluation/run_canvas.hpp"
+
+#include <gtest/gtest.h>
+
+#include "truebearing/core/angle.hpp"
+#include "truebearing/recording/recording.hpp"
+
+namespace truebearing::run_canvas_test {
+namespace {
+
+// A target in space is drawn along the ground: of a slant range what its elevation leaves.
+TEST(RunCanvas, DrawsTheGroundTrackOfATargetInSpace) {
+  const RunCanvas canvas(space_space());
+  EXPECT_TRUE(canvas.in_plane());
+  Recording recording;
+  recording.measured = {"range_m", "bearing_deg", "elevation_deg"};
+  recording.measurements.push_back(
+      {.time_s = 1.0, .z = Eigen::Vector3d(2000.0, radians(90.0), radians(60.0)), .sigma = {}, .sensor = {}});
+  RunPicture picture;
+  canvas.add_measured(recording, picture);
+  ASSERT_EQ(picture.measured.x.size(), 1u);
+  EXPECT_NEAR(picture.measured.x[0], 1000.0, 1e-9);
+  EXPECT_NEAR(picture.measured.y[0], 0.0, 1e-9);
+
+  StepRecord record;
+  record.space = &space_space();
+  record.x = Eigen::Matrix<double, 6, 1>{1.0, 2.0, 3.0, 4.0, 5.0, 6.0};
+  record.P = BoundedMatrix::Identity(6, 6);
+  DrawnTrack track;
+  canvas.add(record, track);
+  EXPECT_EQ(track.line.x.front(), 1.0);
+  EXPECT_EQ(track.line.y.front(), 2.0);
+}
+
+TEST(RunCanvas, DrawsALineOverTime) {
+  EXPECT_FALSE(RunCanvas(line_space()).in_plane());
+}
+
+}  // namespace
+}  // namespace truebearing::run_canvas_test

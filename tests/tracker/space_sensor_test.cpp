@@ -8,6 +8,8 @@
 #include "truebearing/core/random.hpp"
 #include "truebearing/filter/kalman.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
+#include "truebearing/motion/turning_target.hpp"
+#include "truebearing/motion/with_vertical.hpp"
 #include "truebearing/tracker/filter_tracker_of.hpp"
 
 namespace truebearing::space_sensor_test {
@@ -105,6 +107,30 @@ TEST(SpaceSensor, LosesTheDirectionAtRangeZero) {
   ASSERT_EQ(records.size(), 1u);
   EXPECT_EQ(records[0].x, prior.x);
   EXPECT_TRUE(is_covariance(records[0].P));
+}
+
+// Tracks begin with one place or with two, also under a motion whose state is longer than the records'.
+TEST(SpaceSensor, BeginsWithOnePlaceOrWithTwo) {
+  using Turning = WithVertical<TurningTarget<ContinuousWhiteNoise>, ConstantVelocity<1, ContinuousWhiteNoise>>;
+  const ConvertedElevationSensor sensor{{Eigen::Vector3d(1e-3, 1e-7, 1e-7)}};
+  const Turning motion{{{1e-3}, 1e-4}, {{1e-3}}};
+  for (const Start& start : {Start(OnePointStart{30.0, 0.1}), Start(TwoPointStart{0.1})}) {
+    FilterTrackerOf<KalmanFilter<7>, Turning, ConvertedElevationSensor> tracker(space_space(), motion, sensor, start);
+    std::span<const StepRecord> records;
+    for (int k = 0; k < 3; ++k) {
+      State x = kTruth;
+      x.head<3>() += k * kTruth.tail<3>();
+      const RangeBearingElevation<> model{Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones()};
+      records = tracker.step({.time_s = double(k), .z = model.h(x), .sigma = {}, .sensor = {}});
+      EXPECT_EQ(records.size(), k == 0 && std::holds_alternative<TwoPointStart>(start) ? 0u : 1u);
+    }
+    ASSERT_EQ(records.size(), 1u);
+    EXPECT_EQ(records[0].status, StepStatus::ok);
+    ASSERT_EQ(records[0].x.size(), 6);
+    EXPECT_LT((records[0].x.head<3>() - (kTruth.head<3>() + 2.0 * kTruth.tail<3>())).norm(), 0.1);
+    EXPECT_LT((records[0].x.tail<3>() - kTruth.tail<3>()).norm(), 0.5);
+    EXPECT_TRUE(is_covariance(records[0].P));
+  }
 }
 
 }  // namespace

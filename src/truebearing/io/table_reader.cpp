@@ -9,6 +9,7 @@
 
 #include "truebearing/core/suggestion.hpp"
 #include "truebearing/io/file.hpp"
+#include "truebearing/io/key_survey.hpp"
 
 namespace truebearing {
 namespace {
@@ -102,12 +103,21 @@ int nesting_of_text(std::string_view text) {
   return deepest;
 }
 
-std::string describe(Range range) {
-  if (range.high >= 1e300) {
-    if (range.low <= -1e300) return "a finite number";
-    return fmt::format("a number {} {}", range.open_low ? ">" : ">=", range.low);
-  }
-  return fmt::format("a number in {}{}, {}]", range.open_low ? "(" : "[", range.low, range.high);
+/// For a survey of keys: what is read, which values are valid.
+void note(const TableReader& reader, const std::string& key, const char* type, const std::string& valid = {}) {
+  SurveyedKey* entry = surveyed(reader, key);
+  if (!entry) return;
+  if (entry->type.empty()) entry->type = type;
+  if (!valid.empty()) entry->valid.insert(valid);
+}
+
+/// And what it is where it is not said.
+void note_default(const TableReader& reader, const std::string& key, const std::string& value) {
+  if (SurveyedKey* entry = surveyed(reader, key)) entry->defaults.insert(value);
+}
+
+std::string integer_in(std::int64_t low, std::int64_t high) {
+  return fmt::format("an integer in [{}, {}]", low, high);
 }
 
 bool contains(Range range, double value) {
@@ -115,6 +125,14 @@ bool contains(Range range, double value) {
 }
 
 }  // namespace
+
+std::string describe(Range range) {
+  if (range.high >= 1e300) {
+    if (range.low <= -1e300) return "a finite number";
+    return fmt::format("a number {} {}", range.open_low ? ">" : ">=", range.low);
+  }
+  return fmt::format("a number in {}{}, {}]", range.open_low ? "(" : "[", range.low, range.high);
+}
 
 SharedTable parse_toml(std::string_view text, const std::string& name) {
   if (text.size() > kMaxTomlBytes)
@@ -151,11 +169,13 @@ InputError TableReader::error(const std::string& key, const std::string& found, 
 }
 
 const toml::node* TableReader::node(const std::string& key) {
+  surveyed(*this, key);
   asked_.insert(key);
   return table_->get(key);
 }
 
 bool TableReader::has(const std::string& key) {
+  if (SurveyedKey* entry = surveyed(*this, key)) entry->optional = true;
   return node(key) != nullptr;
 }
 
@@ -166,6 +186,7 @@ const toml::node& TableReader::required(const std::string& key) {
 }
 
 double TableReader::number(const std::string& key, Range range) {
+  note(*this, key, "number", describe(range));
   const toml::node& found = required(key);
   const auto value = found.value<double>();
   if (!value || found.is_boolean()) throw error(key, "is " + type_name(found), describe(range));
@@ -174,12 +195,15 @@ double TableReader::number(const std::string& key, Range range) {
 }
 
 double TableReader::number_or(const std::string& key, double fallback, Range range) {
+  note(*this, key, "number", describe(range));
+  note_default(*this, key, fmt::format("{}", fallback));
   return has(key) ? number(key, range) : fallback;
 }
 
 std::int64_t TableReader::integer(const std::string& key, std::int64_t low, std::int64_t high) {
+  const std::string valid = integer_in(low, high);
+  note(*this, key, "integer", valid);
   const toml::node& found = required(key);
-  const std::string valid = fmt::format("an integer in [{}, {}]", low, high);
   const auto* value = found.as_integer();
   if (!value) throw error(key, "is " + type_name(found), valid);
   if (value->get() < low || value->get() > high) throw error(key, fmt::format("is {}", value->get()), valid);
@@ -188,10 +212,14 @@ std::int64_t TableReader::integer(const std::string& key, std::int64_t low, std:
 
 std::int64_t TableReader::integer_or(const std::string& key, std::int64_t fallback, std::int64_t low,
                                      std::int64_t high) {
+  note(*this, key, "integer", integer_in(low, high));
+  note_default(*this, key, fmt::format("{}", fallback));
   return has(key) ? integer(key, low, high) : fallback;
 }
 
 bool TableReader::boolean_or(const std::string& key, bool fallback) {
+  note(*this, key, "true or false");
+  note_default(*this, key, fallback ? "true" : "false");
   if (!has(key)) return fallback;
   const auto* value = required(key).as_boolean();
   if (!value) throw error(key, "is " + type_name(required(key)), "true or false");
@@ -199,6 +227,7 @@ bool TableReader::boolean_or(const std::string& key, bool fallback) {
 }
 
 std::string TableReader::text(const std::string& key) {
+  note(*this, key, "text");
   const toml::node& found = required(key);
   const auto* value = found.as_string();
   if (!value) throw error(key, "is " + type_name(found), "text in quotes");
@@ -206,10 +235,13 @@ std::string TableReader::text(const std::string& key) {
 }
 
 std::string TableReader::text_or(const std::string& key, std::string fallback) {
+  note(*this, key, "text");
+  if (!fallback.empty()) note_default(*this, key, '"' + fallback + '"');
   return has(key) ? text(key) : std::move(fallback);
 }
 
 std::string TableReader::choice(const std::string& key, const std::vector<std::string>& valid) {
+  note(*this, key, "text", fmt::format("\"{}\"", fmt::join(valid, "\", \"")));
   std::string value = text(key);
   if (std::find(valid.begin(), valid.end(), value) == valid.end())
     throw error(key, "is \"" + value + "\"", suggestion(value, valid));
@@ -218,12 +250,15 @@ std::string TableReader::choice(const std::string& key, const std::vector<std::s
 
 std::string TableReader::choice_or(const std::string& key, const std::vector<std::string>& valid,
                                    std::string fallback) {
+  note(*this, key, "text", fmt::format("\"{}\"", fmt::join(valid, "\", \"")));
+  note_default(*this, key, '"' + fallback + '"');
   return has(key) ? choice(key, valid) : std::move(fallback);
 }
 
 std::vector<double> TableReader::numbers(const std::string& key, int size, Range range) {
-  const toml::node& found = required(key);
   const std::string count = size < 0 ? "an array, each " : fmt::format("{} numbers, each ", size);
+  note(*this, key, "numbers", count + describe(range));
+  const toml::node& found = required(key);
   std::vector<double> values;
   const auto take = [&](const toml::node& element) {
     const auto value = element.value<double>();
@@ -241,6 +276,7 @@ std::vector<double> TableReader::numbers(const std::string& key, int size, Range
 }
 
 std::vector<std::string> TableReader::texts(const std::string& key) {
+  note(*this, key, "texts");
   const toml::node& found = required(key);
   const auto* array = found.as_array();
   if (!array) throw error(key, "is " + type_name(found), "an array of texts");
@@ -267,6 +303,7 @@ SharedTable TableReader::own_inside(const std::string& key, const toml::table& t
 }
 
 TableReader TableReader::table(const std::string& key) {
+  note(*this, key, "table");
   const toml::node& found = required(key);
   const auto* sub = found.as_table();
   if (!sub) throw error(key, "is " + type_name(found), "a table");
@@ -274,11 +311,13 @@ TableReader TableReader::table(const std::string& key) {
 }
 
 std::optional<TableReader> TableReader::table_if_present(const std::string& key) {
+  note(*this, key, "table");
   if (!has(key)) return std::nullopt;
   return table(key);
 }
 
 std::vector<TableReader> TableReader::tables(const std::string& key) {
+  note(*this, key, "tables");
   std::vector<TableReader> readers;
   if (!has(key)) return readers;
   const auto* array = required(key).as_array();

@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fmt/format.h>
 #include <numbers>
 #include <toml++/toml.h>
 #include <utility>
 
 #include "truebearing/core/chi_square.hpp"
+#include "truebearing/io/key_survey.hpp"
 
 namespace truebearing {
 namespace {
@@ -102,6 +104,10 @@ double Distribution::share_below(double x) const {
 }
 
 Distribution read_distribution(TableReader& table, const std::string& key, Range range) {
+  if (SurveyedKey* entry = surveyed(table, key)) {
+    entry->type = "number or distribution";
+    entry->valid.insert(describe(range));
+  }
   const toml::node* node = table.node(key);
   if (!node || !node->is_table()) {
     if (node && !node->is_number()) throw table.error(key, "is not a number", kValid);
@@ -125,6 +131,11 @@ Distribution read_distribution(TableReader& table, const std::string& key, Range
 }
 
 Distribution read_distribution_or(TableReader& table, const std::string& key, double fallback, Range range) {
+  if (SurveyedKey* entry = surveyed(table, key)) {
+    entry->type = "number or distribution";
+    entry->valid.insert(describe(range));
+    entry->defaults.insert(fmt::format("{}", fallback));
+  }
   return table.has(key) ? read_distribution(table, key, range) : Distribution(fallback);
 }
 

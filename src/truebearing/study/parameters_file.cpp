@@ -7,6 +7,7 @@
 #include <toml++/toml.h>
 
 #include "truebearing/core/error.hpp"
+#include "truebearing/io/key_survey.hpp"
 #include "truebearing/io/table_reader.hpp"
 
 namespace truebearing {
@@ -74,6 +75,7 @@ void put_numbers(toml::table& table, const std::string& path, const std::vector<
 ParametersFile read_parameters_file(const std::filesystem::path& path) {
   const SharedTable table = read_toml_file(path);
   ParametersFile parameters;
+  const KeySurvey apart;  // what a command wrote is no part of a study's keys
   TableReader reader(table, path.string());
   for (const std::string& name : reader.keys()) {
     TableReader tracker = reader.table(name);

@@ -82,6 +82,7 @@ int command_line(int argc, const char* const* argv) {
   add_check(all);
   add_rules(all);
   add_export(all);
+  add_keys(all);
   add_tma(all);
   occupy_standard_streams();
   std::ios::sync_with_stdio(false);  // of standard input is known then what has come

@@ -18,6 +18,7 @@ void add_report(const Subcommands& all);
 void add_check(const Subcommands& all);
 void add_rules(const Subcommands& all);
 void add_export(const Subcommands& all);
+void add_keys(const Subcommands& all);
 void add_tma(const Subcommands& all);
 
 }  // namespace truebearing

@@ -53,7 +53,7 @@ TEST(Program, TrackWritesWhatTrackersNoticed) {
 
 TEST(Program, HelpAndVersionAreStatus0) {
   const TemporaryFolder folder;
-  for (const char* fine : {"--help", "--version", "compare --help"}) {
+  for (const char* fine : {"--help", "--version", "compare --help", "keys --help"}) {
     const Outcome outcome = run(folder, fine);
     EXPECT_EQ(outcome.status, 0) << fine;
     EXPECT_FALSE(outcome.out.empty()) << fine;

@@ -17,7 +17,7 @@ namespace {
 // Of one log: neighbouring errors go together, and stretches of it are taken for independent.
 constexpr std::size_t kStretches = 20;
 
-int place_of(const std::vector<std::string>& names, const std::string& name) {
+int place_in(const std::vector<std::string>& names, const std::string& name) {
   const auto found = std::find(names.begin(), names.end(), name);
   return found == names.end() ? -1 : static_cast<int>(found - names.begin());
 }
@@ -88,7 +88,7 @@ std::optional<double> miss(const std::vector<std::string>& components, const Mea
     return std::sqrt(squared);
   }
   const int east = record.space->component_index("east_m"), north = record.space->component_index("north_m");
-  const int range = place_of(components, "range_m"), bearing = place_of(components, "bearing_deg");
+  const int range = place_in(components, "range_m"), bearing = place_in(components, "bearing_deg");
   if (east < 0 || north < 0 || (range < 0 && bearing < 0)) return std::nullopt;
   const Eigen::Vector2d sight = Eigen::Vector2d(x[east], x[north]) - sensor.position_m;
   const double turned_rad = bearing < 0 ? 0.0 : wrap_pi(z[bearing] - std::atan2(sight.x(), sight.y()));

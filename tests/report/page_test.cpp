@@ -59,6 +59,21 @@ TEST(Page, FiguresAreThoseOfTheResults) {
   EXPECT_THAT(page, HasSubstr("<td>70</td>")) << "per cent of the way from tuned to the bound";
 }
 
+TEST(Page, SaysWhatOthersPublishedAndWhere) {
+  ResultJson json = results_json();
+  EXPECT_EQ(count_of(report_page({read(json)}), "ublished"), 0);
+  json["published"] = {{"plain <KF>", {{"source", "A & B, 2001"}, {"position_m", 123.4}}},
+                       {"network", {{"source", "C, 2002"}, {"nees", 2.25}}}};
+  const std::string page = report_page({read(json)});
+  EXPECT_EQ(read_markup(page).error, "");
+  EXPECT_THAT(page, HasSubstr("<th scope=\"col\">published</th><th scope=\"col\">position RMSE (m)</th><th "
+                              "scope=\"col\">nees</th><th scope=\"col\">printed in</th>"));
+  EXPECT_THAT(page, HasSubstr("plain &lt;KF&gt;</th><td>123.4</td><td>-</td><td>A &amp; B, 2001</td>"));
+  EXPECT_THAT(page, HasSubstr("network</th><td>-</td><td>2.25</td>"));
+  json["published"]["network"].erase("source");
+  EXPECT_THAT(testing::error_message([&] { read(json); }), HasSubstr("published.network: has no \"source\""));
+}
+
 TEST(Page, HasEveryPlotWithItsMarks) {
   const std::string page = report_page({read(results_json())});
   for (const char* id :

@@ -61,7 +61,7 @@ std::string results_section(const Results& results, const std::string& id, bool 
   if (!results.sets.empty()) text += "<p class=\"note\">Of all sets together; each by itself below.</p>\n";
   text += tracker_table(results.all);
   text += "<p class=\"note\">± is the standard error over runs. Best: the least RMSE among what is no bound.</p>\n";
-  text += paired_table(results.all, true);
+  text += published_table(results.all) + paired_table(results.all, true);
   text += folded("Further figures", paired_table(results.all, false) + metric_table(results.all));
   // Steps of several sets do not lie at the same times.
   text += results.sets.empty() ? figures_sections(results.all, id) : section("Run by run", run_plots(results.all, id));
@@ -69,8 +69,8 @@ std::string results_section(const Results& results, const std::string& id, bool 
   text += correction_section(results.all, id, results.sets.empty(), true);
   for (std::size_t i = 0; i < results.sets.size(); ++i) {
     const Results::Set& set = results.sets[i];
-    text +=
-        fmt::format("<h2>{}</h2>\n", escaped(set.name)) + tracker_table(set.figures) + paired_table(set.figures, true);
+    text += fmt::format("<h2>{}</h2>\n", escaped(set.name)) + tracker_table(set.figures) +
+            published_table(set.figures) + paired_table(set.figures, true);
     text += figures_sections(set.figures, fmt::format("{}set{}_", id, i + 1));
     text += correction_section(set.figures, fmt::format("{}set{}_", id, i + 1), true, false);
   }

@@ -175,6 +175,37 @@ std::string metric_table(const ResultFigures& figures) {
   return table(head, rows);
 }
 
+std::string published_table(const ResultFigures& figures) {
+  if (figures.published.empty()) return {};
+  std::vector<std::string> names;
+  for (const ResultPublished& row : figures.published)
+    for (const auto& [name, value] : row.figures)
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  // The unit of a metric stands with the trackers' own figures of it, that of an RMSE in its name.
+  const auto heading = [&](const std::string& name) {
+    for (const ResultTracker& tracker : figures.trackers) {
+      if (tracker.quantity(name)) return fmt::format("{} RMSE ({})", name_of(name), unit_of(name));
+      for (const ResultMetric& metric : tracker.metrics)
+        if (metric.name == name && !metric.unit.empty() && metric.unit != "1")
+          return fmt::format("{} ({})", phrase(name), metric.unit);
+    }
+    return phrase(name);
+  };
+  std::string head = head_cell("published"), rows;
+  for (const std::string& name : names) head += head_cell(escaped(heading(name)));
+  for (const ResultPublished& row : figures.published) {
+    rows += fmt::format("<tr><th scope=\"row\">{}</th>", escaped(row.name));
+    for (const std::string& name : names) {
+      const auto figure =
+          std::find_if(row.figures.begin(), row.figures.end(), [&](const auto& f) { return f.first == name; });
+      rows += cell(figure == row.figures.end() ? kNaN : figure->second);
+    }
+    rows += fmt::format("<td>{}</td></tr>\n", escaped(row.source));
+  }
+  return table(head + head_cell("printed in"), rows) +
+         "<p class=\"note\">Published: printed by others for the same problem, not run here.</p>\n";
+}
+
 std::string side_by_side_table(const std::vector<Results>& all) {
   constexpr double kMarked = 2.0, kOfHundred = 100.0;
   std::vector<std::pair<std::string, std::string>> rows_of;  // tracker and quantity

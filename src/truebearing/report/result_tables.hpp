@@ -15,6 +15,8 @@ std::string tracker_table(const ResultFigures& figures);
 std::string paired_table(const ResultFigures& figures, bool of_rmse);
 /// The figures that have no time and stand in no plot.
 std::string metric_table(const ResultFigures& figures);
+/// What others printed of the same problem, and where; empty where nothing was.
+std::string published_table(const ResultFigures& figures);
 /// RMSE of each tracker in each file, and what changed from the first; changes beyond two standard errors marked.
 std::string side_by_side_table(const std::vector<Results>& all);
 

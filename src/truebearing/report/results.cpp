@@ -156,6 +156,13 @@ ResultTracker read_bound(const std::string& name, const ResultReader& json) {
   return bound;
 }
 
+ResultPublished read_published(const std::string& name, const ResultReader& json) {
+  ResultPublished row{name, json.at("source").text(), {}};
+  for (const auto& [key, value] : json.entries())
+    if (key != "source") row.figures.emplace_back(key, value.number());
+  return row;
+}
+
 ResultFigures read_figures(const ResultReader& json) {
   ResultFigures figures;
   for (const auto& [name, tracker] : json.at("trackers").entries())
@@ -169,6 +176,9 @@ ResultFigures read_figures(const ResultReader& json) {
       else
         figures.bounds.push_back(read_bound(name, bound));
     }
+  if (json.has("published"))
+    for (const auto& [name, row] : json.at("published").entries())
+      figures.published.push_back(read_published(name, row));
   if (!json.has("paired")) return figures;
   for (const auto& [pair, quantities] : json.at("paired").entries()) {
     const std::size_t dash = pair.find(" - ");

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "truebearing/core/constants.hpp"
@@ -69,11 +70,18 @@ struct ResultPair {
   double mean = kNaN, se = kNaN;
 };
 
+/// What others printed of the same problem: nothing of it was run here.
+struct ResultPublished {
+  std::string name, source;
+  std::vector<std::pair<std::string, double>> figures;  ///< "position_m" or the name of a metric
+};
+
 /// The figures of all runs, or of one set of them.
 struct ResultFigures {
   std::vector<ResultTracker> trackers;  ///< in the study's order
   std::vector<ResultTracker> bounds;    ///< those that are no trackers: cramer_rao, posterior
   std::vector<ResultPair> pairs;
+  std::vector<ResultPublished> published;
 
   const ResultTracker* tracker(std::string_view name) const;
 };

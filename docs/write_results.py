@@ -1,0 +1,148 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Writes the tables of docs/results.md that stand between markers, from the JSON of `truebearing compare`.
+
+    write_results.py PROGRAM            runs the studies as they are and writes the document
+    write_results.py PROGRAM --check    runs them with two runs, writes nothing; status 1 where a table has other rows or
+                                        columns than its marker gives
+
+A marker names a study, what stands in each column and in each row:
+
+    <!-- table: STUDY
+    columns: HEADING = FIGURE | HEADING = FIGURE @ STUDY/SET
+    rows: TRACKER | LABEL = TRACKER
+    -->
+    <!-- end of table -->
+
+FIGURE is `rmse QUANTITY` and `metric NAME` (each with its standard error), `value NAME` (a metric without), `ratio` (to
+plain, each quantity), `nees` or `coverage`. A row may also be one of the study's published ones.
+"""
+import json
+import math
+import pathlib
+import re
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+DOCUMENT = ROOT / "docs" / "results.md"
+MARKER = re.compile(r"(<!-- table: (\S+)\ncolumns: (.+)\nrows: (.+)\n-->\n)((?:\|.*\n)+)(<!-- end of table -->)")
+
+
+def figure(value, decimals=None):
+    """As the program prints them: four digits, of which no more than three stand behind the point."""
+    if value is None:
+        return ""
+    if decimals is None:
+        size = math.floor(math.log10(abs(value))) if value else 0
+        decimals = min(3, max(0, 3 - size))
+    return f"{value:.{decimals}f}"
+
+
+def with_error(value, error, decimals=None):
+    text = figure(value, decimals)
+    if value is None or error is None:
+        return text
+    digits = max(0, 1 - math.floor(math.log10(error))) if error else 0
+    return f"{text} +- {error:.{digits}f}"
+
+
+def metric(tracker, name):
+    for entry in tracker["metrics"]:
+        if entry["name"] == name and "time_s" not in entry:
+            return entry
+    raise SystemExit(f"results.md: no metric \"{name}\"")
+
+
+def cell(results, row, what):
+    kind, _, name = what.partition(" ")
+    if row not in results["trackers"]:
+        printed = results.get("published", {}).get(row, {}).get(name or kind)
+        return "" if printed is None else f"{printed:g}"
+    tracker = results["trackers"][row]
+    if kind == "rmse":
+        return with_error(tracker["rmse"][name], tracker["rmse_se"][name])
+    if kind in ("metric", "value"):
+        entry = metric(tracker, name)
+        decimals = 2 if entry["unit"] == "dB" else None
+        return with_error(entry["value"], entry.get("se") if kind == "metric" else None, decimals)
+    if kind == "ratio":
+        return " / ".join(figure(ratio) for ratio in tracker["ratio_to_plain"].values())
+    if kind == "nees":
+        return figure(tracker["nees"])
+    if kind == "coverage":
+        return figure(tracker["coverage95"])
+    raise SystemExit(f"results.md: \"{what}\" is no figure: rmse, metric, value, ratio, nees or coverage")
+
+
+class Studies:
+    """The results of each study, made once."""
+
+    def __init__(self, program, few_runs):
+        self.program, self.few_runs, self.made = program, few_runs, {}
+
+    def results(self, place):
+        study, _, part = place.partition("/")
+        if study not in self.made:
+            command = [self.program, "compare", f"data/studies/{study}.toml", "--quiet", "--json", "-"]
+            command += ["--runs", "2"] if self.few_runs else []
+            self.made[study] = json.loads(subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.PIPE).stdout)
+        return self.made[study]["sets"][part] if part else self.made[study]
+
+
+def parts(text):
+    """`HEADING = WHAT | WHAT`: pairs of what is shown and what it is."""
+    pairs = []
+    for part in text.split(" | "):
+        shown, _, what = part.rpartition(" = ")
+        pairs.append((shown.strip() or what.strip(), what.strip()))
+    return pairs
+
+
+def table(studies, study, columns, rows):
+    lines = ["| tracker | " + " | ".join(heading for heading, _ in columns) + " |", "|---" * (len(columns) + 1) + "|"]
+    for label, row in rows:
+        cells = []
+        for _, what in columns:
+            name, _, place = what.partition(" @ ")
+            cells.append(cell(studies.results(place or study), row, name))
+        if not any(cells):
+            raise SystemExit(f"results.md: \"{row}\" is no tracker and no published row of {study}")
+        lines.append(f"| {label} | " + " | ".join(cells) + " |")
+    return "\n".join(lines) + "\n"
+
+
+def shape(text):
+    """Headings, labels, and which cells are filled: what does not depend on the number of runs."""
+    lines = [line.strip("|").split("|") for line in text.strip().splitlines()]
+    return lines[:2], [(line[0], [bool(entry.strip()) for entry in line[1:]]) for line in lines[2:]]
+
+
+def main():
+    if len(sys.argv) not in (2, 3) or sys.argv[2:] not in ([], ["--check"]):
+        raise SystemExit(__doc__)
+    check = len(sys.argv) == 3
+    studies = Studies(str(pathlib.Path(sys.argv[1]).resolve()), check)
+    text = DOCUMENT.read_text()
+    other, tables = [], 0
+
+    def written(match):
+        nonlocal tables
+        tables += 1
+        head, study, columns, rows, present, end = match.groups()
+        made = table(studies, study, parts(columns), parts(rows))
+        if shape(made) != shape(present):
+            other.append(study)
+        return head + made + end
+
+    new = MARKER.sub(written, text)
+    if tables == 0 or tables != text.count("<!-- table:"):
+        raise SystemExit(f"results.md: {text.count('<!-- table:')} markers, {tables} of them with columns, rows and an end")
+    if not check:
+        DOCUMENT.write_text(new)
+    elif other:
+        raise SystemExit("results.md: write it anew with ./run results; other rows or columns: " + ", ".join(other))
+
+
+if __name__ == "__main__":
+    main()

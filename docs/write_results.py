@@ -14,8 +14,8 @@ A marker names a study, what stands in each column and in each row:
     -->
     <!-- end of table -->
 
-FIGURE is `rmse QUANTITY` and `metric NAME` (each with its standard error), `value NAME` (a metric without), `ratio` (to
-plain, each quantity), `nees` or `coverage`. A row may also be one of the study's published ones.
+FIGURE is `rmse QUANTITY` and `metric NAME` (each with its standard error), `value NAME NAME...` (metrics without), `ratio`
+(to plain, each quantity), `nees` or `coverage`. A row may also be one of the study's published ones.
 """
 import json
 import math
@@ -63,9 +63,9 @@ def cell(results, row, what):
     if kind == "rmse":
         return with_error(tracker["rmse"][name], tracker["rmse_se"][name])
     if kind in ("metric", "value"):
-        entry = metric(tracker, name)
-        decimals = 2 if entry["unit"] == "dB" else None
-        return with_error(entry["value"], entry.get("se") if kind == "metric" else None, decimals)
+        entries = [metric(tracker, one) for one in name.split()]
+        return " / ".join(with_error(entry["value"], entry.get("se") if kind == "metric" else None,
+                                     2 if entry["unit"] == "dB" else None) for entry in entries)
     if kind == "ratio":
         return " / ".join(figure(ratio) for ratio in tracker["ratio_to_plain"].values())
     if kind == "nees":

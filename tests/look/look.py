@@ -102,6 +102,9 @@ class Looker:
         self.controls(name, page)
         page.size(360, 740, phone=True)
         self.expect(page.value("document.documentElement.scrollWidth") <= 360, name, "is wider than a phone")
+        smallest = page.value("Math.min(99, ...[...document.querySelectorAll('svg.plot')].filter((p) => p.clientWidth).map("
+                              "(p) => parseFloat(getComputedStyle(p).fontSize) * p.getBoundingClientRect().width / p.viewBox.baseVal.width))")
+        self.expect(smallest >= 12, name, f"has plots whose text is {smallest:.1f} px high on a phone")
         self.expect(page.value("document.title") == page.value("document.title.trim()") != "", name, "has no title")
         for error in page.errors:
             self.expect(False, name, "logs: " + error)

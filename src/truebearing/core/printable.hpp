@@ -8,7 +8,7 @@
 
 namespace truebearing {
 
-/// Control characters, characters that turn the direction of a line, and bytes that are no UTF-8 become \n, \t, \x1b.
+/// Control characters, characters that turn the direction of a line, and bytes that are no UTF-8 become `\n`, `\t`, `\x1b`.
 std::string printable(std::string_view text);
 
 /// The beginning of a printable text and "...", of at most `most` bytes (at least 3); all of it where it fits.

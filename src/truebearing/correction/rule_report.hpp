@@ -28,8 +28,8 @@ std::string conditions_of(const ReportedRule& rule, const CorrectionModel& model
 std::string amounts(const CorrectionModel& model, const Eigen::VectorXd& outputs);
 
 /// One sentence per rule, the most used first:
-/// `1. IF gain in position_m is MEDIUM AND ... THEN add +2890 m, +152 m/s   (usage 12.1 %, teacher's mean +2710 m, +140
-/// m/s)`
+/// 1. IF gain in position_m is MEDIUM AND ... THEN add +2890 m, +152 m/s   (usage 12.1 %, teacher's mean +2710 m, +140
+/// m/s)
 std::string rule_sentences(const CorrectionModel& model);
 
 /// The word for a standardised value u of a feature that is the same for a mirrored target (parity +1) or changes sign

@@ -10,7 +10,7 @@
 
 namespace truebearing {
 
-/// <quantity>_rmse and _median, nees, coverage95, missing_share, and loss_rate where the rule says what lost is.
+/// QUANTITY_rmse and _median, nees, coverage95, missing_share, and loss_rate where the rule says what lost is.
 /// Paired: of each quantity at each time, the difference of the error norms, over the runs in which both have an
 /// estimate.
 std::shared_ptr<const MetricFamily> time_metrics();

@@ -44,7 +44,7 @@ class CsvReader {
   std::string_view text(std::size_t column) const;
   /// The same without spaces around it.
   std::string_view word(std::size_t column) const;
-  /// The cell as a number; NaN where it is empty, nan, inf or another word for "none": NA, null, None, -, 1.#QNAN, ...
+  /// The cell as a number; NaN where it is empty, nan, inf or another word for "none": NA, null, None, -, ...
   double number(std::size_t column) const;
   /// The same without an error: false where the cell is no number.
   bool read_number(std::size_t column, double& value) const;

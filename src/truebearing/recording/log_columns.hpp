@@ -59,7 +59,7 @@ LogLayout read_log_layout(const CsvReader& csv, const TimeColumn& time, const Re
 /// InputError where the file has no such column.
 CsvReader with_names(CsvReader csv, const RecordingOptions& options);
 
-/// The column <stem>_<unit> in a unit of that dimension, of which a file has one as a rule.
+/// The column STEM_UNIT in a unit of that dimension, of which a file has one as a rule.
 std::optional<LogColumn> find_column(const CsvReader& csv, std::string_view stem, Dimension dimension);
 
 /// Whether the options leave that column out.

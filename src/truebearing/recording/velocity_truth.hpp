@@ -15,8 +15,8 @@ namespace truebearing {
 /// NaN are left out. NaN where the position is NaN or fewer than two distinct times remain.
 std::vector<double> velocity_truth(std::span<const double> time_s, std::span<const double> position_m);
 
-/// Completes true states x (N, of the space) that give positions only: a component <name>_mps that is not `given`
-/// becomes the velocity_truth() of <name>_m, and velocity_mps that of position_m.
+/// Completes true states x (N, of the space) that give positions only: a component NAME_mps that is not `given`
+/// becomes the velocity_truth() of NAME_m, and velocity_mps that of position_m.
 void complete_velocities(const StateSpace& space, const std::vector<bool>& given, std::span<const double> time_s,
                          std::span<BoundedVector> x);
 

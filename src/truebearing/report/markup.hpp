@@ -7,7 +7,7 @@
 
 namespace truebearing {
 
-/// Between tags or inside a quoted attribute. Control characters, and bytes that are no UTF-8, become \n, \x1b.
+/// Between tags or inside a quoted attribute. Control characters, and bytes that are no UTF-8, become `\n`, `\x1b`.
 std::string escaped(std::string_view text);
 
 /// With its first letter, of a to z, as a capital.

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "truebearing/core/bounded.hpp"
 #include "truebearing/core/error.hpp"
 
 namespace truebearing::state_space_test {
@@ -36,7 +37,7 @@ TEST(StateSpace, OfOtherComponentsIsMadeOnceWithOneQuantityEach) {
 
 TEST(StateSpace, RefusesNoComponentsAndTooMany) {
   EXPECT_THROW(state_space_of_components({}), InputError);
-  EXPECT_THROW(state_space_of_components(std::vector<std::string>(9, "x_m")), InputError);
+  EXPECT_THROW(state_space_of_components(std::vector<std::string>(kMaxDimension + 1, "x_m")), InputError);
 }
 
 }  // namespace

@@ -303,6 +303,21 @@ TEST(FeatureExtractor, BlocksThatTheRecordsLackAreRefused) {
   EXPECT_EQ(refusal({.kind = FeatureKind::log_step}, {}), "no error");
 }
 
+TEST(FeatureExtractor, SensorIsWhoTookTheMeasurement) {
+  FeatureExtractor extractor = extractor_of({{.kind = FeatureKind::sensor, .sensor = 2}});
+  testing::RadarFilter radar;
+  const auto tracker = radar.tracker();
+  FeatureExtractor::Features features;
+  StepRecord record =
+      tracker->step({.time_s = 1.0, .z = BoundedVector::Constant(1, 5.0), .sigma = {}, .sensor = {}})[0];
+  extractor.extract(record, {}, features);
+  EXPECT_EQ(features[0], 0.0);
+  record.source = 1;
+  extractor.extract(record, {}, features);
+  EXPECT_EQ(features[0], 1.0);
+  EXPECT_THAT(error_message([] { extractor_of({{.kind = FeatureKind::sensor}}); }), HasSubstr("from 1"));
+}
+
 TEST(FeatureExtractor, NumberOfFeaturesIsBounded) {
   EXPECT_THAT(error_message([] { extractor_of({}); }), HasSubstr("1 to 16"));
   EXPECT_THAT(error_message([] { extractor_of(std::vector<FeatureSpec>(17, {.kind = FeatureKind::log_step})); }),
@@ -310,7 +325,7 @@ TEST(FeatureExtractor, NumberOfFeaturesIsBounded) {
 }
 
 TEST(Feature, NamesGoThereAndBackAndMisspeltOnesAreSuggested) {
-  EXPECT_EQ(feature_kind_names().size(), 26u);
+  EXPECT_EQ(feature_kind_names().size(), 27u);
   for (const std::string& name : feature_kind_names()) EXPECT_EQ(to_string(feature_kind(name)), name);
   EXPECT_THAT(error_message([] { feature_kind("inovation"); }), HasSubstr("did you mean \"innovation\""));
 }
@@ -325,7 +340,8 @@ TEST(Feature, ParityIsWhatAMirroredTargetDoes) {
                      .component = "position_m",
                      .companion = name == "companion_difference" ? "wide" : "",
                      .alpha = 0.3,
-                     .offset = 0.1});
+                     .offset = 0.1,
+                     .sensor = 1});
   }
   RecordBlocks blocks = kAll;
   blocks.neighbour = true;

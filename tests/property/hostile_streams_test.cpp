@@ -49,13 +49,26 @@ double hostile(RandomStream& random) {
 struct Taken {
   Eigen::Index components = 0;
   int sensors = 0;
+  std::vector<Source> sources{};  ///< where several take turns
 };
 
 std::optional<Taken> taken_by(const Tracker& tracker, const Study& study) {
   const std::optional<Measured> measured = tracker.measures();
   if (!measured) return std::nullopt;
   if (*measured == Measured::snapshots()) return Taken{0, study.scenario().measured().value().sensors};
-  return Taken{static_cast<Eigen::Index>(measured->components.size()), 0};
+  return Taken{static_cast<Eigen::Index>(measured->components.size()), 0, measured->sources};
+}
+
+// Where several sensors take turns: each measurement is one's, now and then of one that there is not.
+void share_out(const Taken& taken, double unknown_share, RandomStream& random, Stream& stream) {
+  if (taken.sources.empty()) return;
+  for (Measurement& measurement : stream.measurements) {
+    const std::size_t source = random.index(taken.sources.size());
+    measurement.source = random.uniform() < unknown_share ? -1 : static_cast<int>(source);
+    const auto size = static_cast<Eigen::Index>(taken.sources[source].components.size());
+    measurement.z.conservativeResize(size);
+    if (measurement.sigma.size() > 0) measurement.sigma.conservativeResize(size);
+  }
 }
 
 // Most blocks are noise of the array that the others are of, with hostile values here and there.
@@ -96,6 +109,7 @@ Stream hostile_stream(int opening, const Taken& taken, RandomStream& random) {
                                       std::abs(hostile(random))};
     if (taken.sensors > 0) add_hostile_block(taken.sensors, random, stream);
   }
+  share_out(taken, 0.05, random, stream);
   return stream;
 }
 
@@ -144,6 +158,7 @@ TEST_P(HostileStreams, EmptyRowsLeaveNoTrace) {
     for (int k = 1; k <= kTameRows; ++k) {
       Stream row;
       add_tame_row(k, taken->components, taken->sensors, random, row);
+      share_out(*taken, 0.0, random, row);
       const Published expected = published(*without, row.measurements);
       rows += expected.rows.size();
       ASSERT_EQ(expected.fault, "");

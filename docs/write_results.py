@@ -30,12 +30,12 @@ MARKER = re.compile(r"(<!-- table: (\S+)\ncolumns: (.+)\nrows: (.+)\n-->\n)((?:\
 
 
 def figure(value, decimals=None):
-    """As the program prints them: four digits, of which no more than three stand behind the point."""
+    """As the program prints them: four digits, of which no more than three stand behind the point, or three below .2."""
     if value is None:
         return ""
     if decimals is None:
         size = math.floor(math.log10(abs(value))) if value else 0
-        decimals = min(3, max(0, 3 - size))
+        decimals = min(6, 2 - size) if 0 < abs(value) < 0.2 else min(3, max(0, 3 - size))
     return f"{value:.{decimals}f}"
 
 

@@ -13,6 +13,15 @@ const Rows kRows{{"tracker", "position RMSE m", "+-", "velocity RMSE m/s", "+-"}
                  {"plain", "127.9", "1.944", "31.62", "0.579"},
                  {"tuned", "82.85", "0.334", "22.00", "0.236"}};
 
+TEST(TextTable, SmallErrorsKeepThreeDigits) {
+  EXPECT_EQ(fine_figure(0.09764), "0.0976");
+  EXPECT_EQ(fine_figure(0.1234), "0.123");
+  EXPECT_EQ(fine_figure(-0.000312), "-0.000312");
+  EXPECT_EQ(fine_figure(0.5), figure(0.5));
+  EXPECT_EQ(fine_figure(0.0), "0.000");
+  EXPECT_EQ(fine_figure(1e-9), "0.000");
+}
+
 TEST(TextTable, WithoutAWidthIsOneBlock) {
   EXPECT_EQ(aligned(kRows),
             "tracker  position RMSE m     +-  velocity RMSE m/s     +-\n"

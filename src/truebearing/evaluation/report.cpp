@@ -174,8 +174,9 @@ std::vector<std::string> table_row(const Comparison& comparison, const TrackerSu
   std::vector<std::string> row{is_bound(comparison, summary.name) ? summary.name + " (bound)" : summary.name};
   for (const QuantitySummary& column : quantities_of(comparison)) {
     const QuantitySummary* quantity = summary.quantity(column.name);
-    row.push_back(marked(quantity ? figure(quantity->rmse) : "-", is_best(comparison, summary, column.name), layout));
-    row.push_back(quantity ? figure(quantity->rmse_se) : "-");
+    row.push_back(
+        marked(quantity ? fine_figure(quantity->rmse) : "-", is_best(comparison, summary, column.name), layout));
+    row.push_back(quantity ? fine_figure(quantity->rmse_se) : "-");
     if (plain) row.push_back(quantity ? figure(ratio_to(plain, *quantity)) : "-");
     if (const WayToBound way = way_to_bound(comparison)) {
       const double share = way.share(summary, column.name);

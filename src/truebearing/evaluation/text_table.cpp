@@ -92,6 +92,13 @@ std::string figure(double value) {
                           : fmt::format("{:.3f}", value);
 }
 
+std::string fine_figure(double value) {
+  constexpr double kFine = 0.2, kLeast = 1e-6;
+  const double size = std::abs(value);
+  if (!(size < kFine) || size < kLeast) return figure(value);
+  return fmt::format("{:.{}f}", value, std::min(2 - static_cast<int>(std::floor(std::log10(size))), 6));
+}
+
 std::string aligned(const Rows& rows, const TableLayout& layout) {
   if (rows.empty()) return {};
   if (layout.markdown) return in_markdown(rows);

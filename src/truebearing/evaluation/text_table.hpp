@@ -9,6 +9,8 @@ namespace truebearing {
 
 /// Three or four significant digits, without an exponent below ten million; "-" where there is none.
 std::string figure(double value);
+/// The same with three significant digits below .2 too, as errors of centimetres want it.
+std::string fine_figure(double value);
 
 using Rows = std::vector<std::vector<std::string>>;
 

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <sstream>
+#include <vector>
 
 #include "tests/support/error_message.hpp"
 #include "truebearing/core/angle.hpp"
@@ -88,6 +89,17 @@ TEST(SeveralSensorsLog, SigmasAreThoseOfTheRowsSensor) {
   EXPECT_LT((log.measurements[1].sigma - Eigen::Vector3d(0.3, radians(2.0), 0.4)).norm(), 1e-15);
   EXPECT_EQ(log.measurements[2].sigma.size(), 0);  // the sensor's own hold
   EXPECT_FALSE(log.measurements[2].is_missing());
+}
+
+TEST(SeveralSensorsLog, ClocksThatAreAheadAreSetRightAndTheirRowsPutInOrder) {
+  RecordingOptions options = options_of({kLaser, kRadar});
+  options.clock_offsets_s = {0.0, 0.3};  // the radar's
+  std::istringstream stream(kHeader + "0,3,4,,,\n0.1,3,4,,,\n0.2,3,4,,,\n0.45,,,5,90,-1\n0.5,3,4,,,\n");
+  const Recording log = read_recording(stream, "log.csv", options);
+  std::vector<double> times_s;
+  for (const Measurement& measurement : log.measurements) times_s.push_back(measurement.time_s);
+  EXPECT_THAT(times_s, ::testing::Pointwise(::testing::DoubleNear(1e-12), {0.0, 0.1, 0.15, 0.2, 0.5}));
+  EXPECT_EQ(log.measurements[2].source, 1);
 }
 
 TEST(SeveralSensorsLog, ReadsBackAsItWasWritten) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 #include "tests/support/error_message.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -89,6 +90,12 @@ TEST(Sensors, TheirGatesAreTheirOwn) {
     EXPECT_EQ(records[0].status, measurement.source == 1 ? StepStatus::rejected : StepStatus::ok);
   }
   EXPECT_EQ(both->counts().gated, 1);
+}
+
+TEST(Sensors, ClocksAreThoseOfTheSensorsByName) {
+  EXPECT_TRUE(study_of(kScenario + kSensors + kTracker).recording_options().clock_offsets_s.empty());
+  const Study study = study_of(kScenario + kSensors + "clock_offset_s = -0.5\n" + kTracker);  // of the plots
+  EXPECT_EQ(study.recording_options().clock_offsets_s, (std::vector<double>{-0.5, 0.0}));
 }
 
 TEST(Sensors, MistakesSayWhatWouldBeRight) {

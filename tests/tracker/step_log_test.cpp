@@ -179,6 +179,32 @@ TEST(StepLog, TooManyComponentsAreRefused) {
   EXPECT_THAT(error_of(header + "\n" + row + "\n"), HasSubstr("at most 10"));
 }
 
+TEST(StepLog, InnovationsOfTwoSizesAreTheirSensors) {
+  StepLogWriter writer(line_space(), StepLogWriter::Columns{2, {"long", "short"}, false});
+  std::vector<StepRecord> records(3);
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    StepRecord& record = records[k];
+    const int size = k == 1 ? 1 : 2;
+    record.time_s = static_cast<double>(k);
+    record.space = &line_space();
+    record.x = Eigen::Vector2d(1.0, 2.0);
+    record.P = Eigen::Matrix2d::Identity();
+    record.source = size == 1 ? 1 : 0;
+    record.innovation = Innovation{BoundedVector::Constant(size, 5.0), BoundedVector::Constant(size, 0.5),
+                                   BoundedMatrix::Identity(size, size), 0.25 * size};
+    writer.add("mine", record);
+  }
+  const StepLog log = parse(writer.str());
+  ASSERT_EQ(log.records.size(), 3u);
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    EXPECT_EQ(log.records[k].source, records[k].source);
+    EXPECT_EQ(log.records[k].innovation->nu, records[k].innovation->nu);
+    EXPECT_EQ(log.records[k].innovation->S, records[k].innovation->S);
+    EXPECT_DOUBLE_EQ(log.records[k].innovation->nis, records[k].innovation->nis);
+    EXPECT_EQ(log.z[k].size(), records[k].innovation->z.size());
+  }
+}
+
 TEST(StepLog, MeasurementAndTruthAreReadWhereTheyAre) {
   const StepLog log =
       parse("time_s,track,x_position_m,P_1_1,z_1,truth_position_m,truth_velocity_mps\n1,0,5,2,7,6,\n2,0,5,2,,6,1\n");

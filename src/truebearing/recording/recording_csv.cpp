@@ -100,6 +100,10 @@ MeasurementLog::MeasurementLog(CsvReader csv, RecordingOptions options)
   }
   findings_.left_out = layout_.left_out(csv_);
   if (!options_.sources.empty()) find_sources();
+  // Rows that are in order by clocks that disagree are so far out of it by one that is right.
+  if (const auto [least, most] = std::minmax_element(options_.clock_offsets_s.begin(), options_.clock_offsets_s.end());
+      least != most)
+    options_.sort_window_s = std::max(options_.sort_window_s, *most - *least);
 }
 
 // Where each sensor's components stand among all that is measured; nowhere for one that the log has no columns of.
@@ -274,11 +278,13 @@ bool MeasurementLog::read_row() {
   while (!is_of_target());
   Row row;
   row.time_s = time_.read(csv_);
-  check_lateness(row.time_s);
-  row.number = rows_++;
   row.line = csv_.line();
   for (const std::size_t column : columns_) row.cells.push_back(csv_.number(column));
   row.measurement = read_measurement(row.cells, row.time_s);
+  if (!options_.clock_offsets_s.empty())
+    row.time_s = row.measurement.time_s -= options_.clock_offsets_s[static_cast<std::size_t>(row.measurement.source)];
+  check_lateness(row.time_s);
+  row.number = rows_++;
   row.truth = BoundedVector::Constant(static_cast<Eigen::Index>(layout_.truth.size()), kNaN);
   for (std::size_t i = 0; i < layout_.truth.size(); ++i)
     if (const auto& column = layout_.truth[i])

@@ -18,6 +18,8 @@ struct RecordingOptions {
   std::vector<std::string> measured{};
   /// Of several sensors: a row is one's, by the name in a column `sensor`, else by the cells that are filled.
   std::vector<Source> sources{};
+  /// What the clock of each of them is ahead of the log's: taken off its times. Empty where all clocks agree.
+  std::vector<double> clock_offsets_s{};
   /// The target whose rows are read, where the file has several.
   std::string target{};
   /// Rows that come later than others of a later time are put in order where they are no more than this late.

@@ -262,6 +262,7 @@ OneSensor read_sensor(TableReader table, const StateSpace& space, double factor)
     throw table.error("model", fmt::format("is \"{}\", which has no meaning in the space {}", kind.model, space.name),
                       fmt::format("the space {}", fmt::join(kind.spaces, ", ")));
   OneSensor one{without_bias(table, kind.read({table, space, factor})), kInfinity};
+  static_cast<void>(table.number_or("clock_offset_s", 0.0, {-1e6, 1e6}));  // which logs are read by
   if (table.has("gate_probability"))
     one.gate_nis = chi_square_quantile(table.number("gate_probability", kGate), one.sensor->size());
   table.finish();

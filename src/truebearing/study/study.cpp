@@ -24,6 +24,17 @@ void add_texts(const toml::node& node, const std::filesystem::path& folder, std:
     for (const auto& [key, value] : *table) add_texts(value, folder, files);
 }
 
+// [sensors.NAME] clock_offset_s, in the order of their names; empty where all clocks agree. What is no number is refused
+// where a tracker reads the table.
+std::vector<double> clock_offsets_of(const toml::table* sensors) {
+  std::vector<double> offsets;
+  if (!sensors) return offsets;
+  for (const auto& [name, sensor] : *sensors)  // a table's keys are in order
+    if (const toml::table* one = sensor.as_table()) offsets.push_back((*one)["clock_offset_s"].value_or(0.0));
+  if (std::all_of(offsets.begin(), offsets.end(), [](double offset) { return offset == 0.0; })) offsets.clear();
+  return offsets;
+}
+
 }  // namespace
 
 Study Study::load(const std::filesystem::path& path) {
@@ -42,6 +53,7 @@ void Study::read(const StudyFile& file) {
   scenario_file_ = is_inside ? path_.string() : reader.resolve(reader.text("scenario")).string();
   scenario_table_ = is_inside ? reader.table("scenario").raw() : read_toml_file(scenario_file_);
   scenario_ = read_scenario(TableReader(scenario_table_, scenario_file_, is_inside ? "scenario" : ""), kMoreScenarios);
+  clock_offsets_s_ = clock_offsets_of((*file.table)["sensors"].as_table());
   if (auto recorded = reader.table_if_present("recorded")) recorded_ = read_recorded_spec(std::move(*recorded));
   if (auto log = reader.table_if_present("log")) log_ = read_log_table(std::move(*log));
   if (auto sets = reader.table_if_present("sets"))
@@ -121,6 +133,7 @@ RecordingOptions Study::recording_options() const {
   if (const std::optional<Measured> measured = scenario_->measured(); measured && !measured->is_step_log()) {
     options.measured = measured->components;
     options.sources = measured->sources;
+    if (clock_offsets_s_.size() == measured->sources.size()) options.clock_offsets_s = clock_offsets_s_;
   }
   return options;
 }

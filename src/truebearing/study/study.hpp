@@ -114,6 +114,7 @@ class Study {
   std::vector<std::pair<std::string, std::unique_ptr<Scenario>>> sets_;
   std::optional<RecordedSpec> recorded_;
   RecordingOptions log_;
+  std::vector<double> clock_offsets_s_;  // of the sensors, by name; empty where all are 0
   std::uint64_t seed_ = 1;
   std::size_t runs_ = 1000;
   std::size_t tuning_runs_ = 300;

@@ -6,7 +6,7 @@
 
 #include "truebearing/study/study.hpp"
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   const auto study = truebearing::Study::load(argc > 1 ? argv[1] : "data/studies/radar_1d_family.toml");
   const auto tracker = study.make_tracker("nfnn");
   truebearing::Measurement measurement;
@@ -14,4 +14,7 @@ int main(int argc, char** argv) {
   while (std::cin >> measurement.time_s >> measurement.z[0])
     for (const truebearing::StepRecord& record : tracker->step(measurement))
       std::cout << record.time_s << " s: " << record.x[0] << " +- " << std::sqrt(record.P(0, 0)) << " m\n";
+} catch (const truebearing::InputError& error) {
+  std::cerr << error.what() << "\n";
+  return 1;
 }

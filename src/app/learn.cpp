@@ -2,6 +2,7 @@
 // truebearing learn STUDY.toml [-o FOLDER] [--report PAGE.html]: tunes, trains, compares and reports in one go.
 #include <cstdint>
 #include <filesystem>
+#include <fmt/format.h>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,6 +13,7 @@
 #include "app/data_folder.hpp"
 #include "app/output.hpp"
 #include "app/subcommands.hpp"
+#include "app/terminal.hpp"
 #include "app/workflow.hpp"
 #include "truebearing/core/error.hpp"
 
@@ -77,6 +79,13 @@ void learn(const LearnArguments& arguments) {
   const CorrectionModels models = train_study(study, {}, workflow);
   for (std::size_t i = 0; i < names.size(); ++i) write_model(models_to_write[i], *models.at(names[i]));
   compare_study(study, models, options);
+  if (!arguments.folder.empty()) {
+    std::vector<std::string> named;
+    for (const fs::path& file : own) named.push_back(file.filename().string());
+    say(fmt::format(
+        "truebearing: {} reads what was learned where it names {}: move them there from {}, or name them there",
+        arguments.study, fmt::join(named, ", "), arguments.folder));
+  }
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ struct NewArguments {
 };
 
 const std::vector<std::string>& kinds() {
-  static const std::vector<std::string> all{"radar", "bearings", "sonar", "array", "flight"};
+  static const std::vector<std::string> all{"radar", "polar", "bearings", "sonar", "array", "flight"};
   return all;
 }
 
@@ -51,7 +51,8 @@ std::vector<std::pair<std::size_t, std::size_t>> numbers_in(std::string_view tex
 
 void check_numbers(const std::string& option, const std::vector<double>& numbers, std::size_t count) {
   if (numbers.size() != count)
-    throw InputError(option, fmt::format("has {} numbers", numbers.size()), fmt::format("{} for this kind", count));
+    throw InputError(option, fmt::format("has {} numbers", numbers.size()),
+                     fmt::format("{} for this kind; a radar of range and bearing is `truebearing new polar`", count));
   for (const double number : numbers)
     if (!(number > 0.0) || !std::isfinite(number))
       throw InputError(option, fmt::format("is {}", number), "numbers > 0");
@@ -106,11 +107,17 @@ void write_new_study(const NewArguments& options) {
 void add_new(const Subcommands& all) {
   auto options = std::make_shared<NewArguments>();
   const Subcommand command = all.add("new", "write a small complete study to begin with");
-  command.argument("kind", options->kind, fmt::format("{}", fmt::join(kinds(), ", "))).required().one_of(kinds());
+  command
+      .argument("kind", options->kind,
+                fmt::format("{}: a radar that gives East and North, or range and bearing (polar), ...",
+                            fmt::join(kinds(), ", ")))
+      .required()
+      .one_of(kinds());
   command.argument("-o,--output", options->output, "the file; KIND.toml where not given; - is standard output");
   command.argument(
       "--sigma", options->sigma,
-      "standard deviation of what is measured: m (radar, flight), degrees (bearings), degrees and Hz (sonar)");
+      "standard deviation of what is measured: m (radar, flight), m and degrees (polar), degrees (bearings), degrees and "
+      "Hz (sonar)");
   command.argument("--period", options->period_s, "s between measurements");
   command.argument("--speeds", options->speeds, "least and greatest of the targets, m/s");
   command.runs([options] { write_new_study(*options); });

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <memory>
 #include <system_error>
+#include <toml++/toml.h>
 #include <vector>
 
 #include "app/data_folder.hpp"
@@ -13,6 +14,7 @@
 #include "app/subcommands.hpp"
 #include "truebearing/core/error.hpp"
 #include "truebearing/io/file.hpp"
+#include "truebearing/io/table_reader.hpp"
 #include "truebearing/recording/recording_csv.hpp"
 #include "truebearing/recording/snapshot_log.hpp"
 #include "truebearing/simulation/bearings_of_track.hpp"
@@ -31,8 +33,17 @@ struct SimulateArguments {
   bool quiet = false;
 };
 
+// A scenario's file, or the scenario that a study has.
+std::unique_ptr<Scenario> scenario_in(const std::filesystem::path& path) {
+  TableReader file(read_toml_file(path), path.string());
+  if (file.has("kind") || !file.has("scenario")) return load_scenario(path);
+  const toml::node* scenario = file.node("scenario");
+  if (scenario->is_table()) return read_scenario(file.table("scenario"));
+  return load_scenario(file.resolve(file.text("scenario")));
+}
+
 std::unique_ptr<Scenario> scenario_of(const SimulateArguments& options) {
-  std::unique_ptr<Scenario> scenario = load_scenario(options.scenario);
+  std::unique_ptr<Scenario> scenario = scenario_in(options.scenario);
   if (options.track.empty()) return scenario;
   const auto* bearings = dynamic_cast<const BearingsOnlyScenario*>(scenario.get());
   if (!bearings)

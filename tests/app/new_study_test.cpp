@@ -38,7 +38,8 @@ TEST_P(NewStudyOfKind, IsValidAndItsTrackersRun) {
   EXPECT_THAT(compared.out, HasSubstr("nfnn"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, NewStudyOfKind, ::testing::Values("radar", "bearings", "sonar", "array", "flight"),
+INSTANTIATE_TEST_SUITE_P(Kinds, NewStudyOfKind,
+                         ::testing::Values("radar", "polar", "bearings", "sonar", "array", "flight"),
                          [](const auto& test) { return std::string(test.param); });
 
 TEST(NewStudy, TakesSensorPeriodAndSpeedsFromItsOptions) {
@@ -54,6 +55,9 @@ TEST(NewStudy, TakesSensorPeriodAndSpeedsFromItsOptions) {
   EXPECT_THAT(study, HasSubstr("\"mine.nfnn.json\""));
   EXPECT_THAT(study, Not(HasSubstr("\"radar")));
   EXPECT_EQ(run(folder, "check mine.toml").status, 0);
+  EXPECT_EQ(run(folder, "new polar -o polar.toml --sigma 40 0.2").status, 0);
+  EXPECT_THAT(folder.read("polar.toml"), HasSubstr("range_sigma_m = 40, bearing_sigma_deg = 0.2 }   # --sigma"));
+  EXPECT_THAT(run(folder, "new radar -o b.toml --sigma 40 0.2").err, HasSubstr("truebearing new polar"));
   EXPECT_EQ(run(folder, "new sonar -o sonar.toml --sigma 2 0.1").status, 0);
   EXPECT_THAT(folder.read("sonar.toml"), HasSubstr("bearing_sigma_deg = 2, frequency_sigma_hz = 0.1 }   # --sigma"));
 }

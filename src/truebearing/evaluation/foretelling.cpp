@@ -26,7 +26,7 @@ int place_in(const std::vector<std::string>& names, const std::string& name) {
 using Misses = std::vector<std::vector<double>>;  // [tracker][foretold]
 
 void hide_and_foretell(const TrackerSet& trackers, const Recording& recording, std::size_t steps, bool first_half,
-                       std::string& quantity, Misses& misses) {
+                       std::string& quantity, Misses& misses, std::vector<double>& gate_sums) {
   TrackerSet set = trackers.fresh();
   const auto is_hidden = [&](std::size_t k) { return (k / steps % 2 == 0) == first_half; };
   std::vector<Measurement> shown = recording.measurements;
@@ -38,7 +38,7 @@ void hide_and_foretell(const TrackerSet& trackers, const Recording& recording, s
     const Measurement& measurement = recording.measurements[k];
     const bool is_last_hidden = is_hidden(k) && k % steps == steps - 1;
     if (!is_last_hidden || is_unusable(recording, measurement)) continue;
-    std::vector<double> missed;
+    std::vector<double> missed, gates;
     for (int i = 0; i < set.size(); ++i) {
       const std::span<const StepRecord> records = set.records(i);
       std::string of;
@@ -46,9 +46,14 @@ void hide_and_foretell(const TrackerSet& trackers, const Recording& recording, s
       if (records.size() == 1) one = miss(components_of(recording, measurement), measurement, records[0], of);
       if (one && quantity.empty()) quantity = of;
       missed.push_back(one && of == quantity ? *one : kNaN);
+      const bool is_corrected = records.size() == 1 && records[0].correction;
+      gates.push_back(is_corrected ? records[0].correction->gate : kNaN);
     }
     if (std::any_of(missed.begin(), missed.end(), [](double error) { return !std::isfinite(error); })) continue;
-    for (std::size_t i = 0; i < missed.size(); ++i) misses[i].push_back(missed[i]);
+    for (std::size_t i = 0; i < missed.size(); ++i) {
+      misses[i].push_back(missed[i]);
+      gate_sums[i] += gates[i];
+    }
   }
 }
 
@@ -107,15 +112,20 @@ Foretelling foretell(const TrackerSet& trackers, const Recording& recording, int
   constexpr std::size_t kLeast = 4;
   Foretelling told{steps, {}, 0, {}, 0};
   Misses misses(static_cast<std::size_t>(trackers.size()));
+  std::vector<double> gate_sums(misses.size());
   for (const bool first_half : {false, true})
-    hide_and_foretell(trackers, recording, static_cast<std::size_t>(steps), first_half, told.quantity, misses);
+    hide_and_foretell(trackers, recording, static_cast<std::size_t>(steps), first_half, told.quantity, misses,
+                      gate_sums);
   told.foretold = misses.front().size();
   if (told.foretold < kLeast)
     throw InputError("the log",
                      fmt::format("has {} measurements that all trackers foretell {} steps ahead", told.foretold, steps),
                      fmt::format("{} or more, of places, ranges or bearings of one target", kLeast));
   for (std::size_t i = 0; i < misses.size(); ++i) {
-    told.trackers.push_back({trackers.name(static_cast<int>(i)), pooled_rmse(stretches_of(misses[i])), {0.0, 0.0}});
+    told.trackers.push_back({trackers.name(static_cast<int>(i)),
+                             pooled_rmse(stretches_of(misses[i])),
+                             {0.0, 0.0},
+                             gate_sums[i] / static_cast<double>(told.foretold)});
     if (told.trackers[i].rmse.value < told.trackers[told.best].rmse.value) told.best = i;
   }
   for (std::size_t i = 0; i < misses.size(); ++i)
@@ -124,6 +134,7 @@ Foretelling foretell(const TrackerSet& trackers, const Recording& recording, int
 }
 
 std::string foretelling_text(const Foretelling& told) {
+  constexpr double kShut = 0.05;
   const std::string title = title_of(told.quantity);
   std::vector<std::vector<std::string>> rows{
       {"foretold", fmt::format("{} RMSE", title), "+-", "squared, above the best", "in standard errors"}};
@@ -139,6 +150,10 @@ std::string foretelling_text(const Foretelling& told) {
   std::string text = aligned(rows);
   text += fmt::format("{} measurements, {} step{} ahead, each half of the log foretold from the other\n", told.foretold,
                       told.steps, told.steps == 1 ? "" : "s");
+  for (const Foretelling::Tracker& one : told.trackers)
+    if (one.mean_gate < kShut)
+      text += fmt::format(
+          "{}: its gate is shut where measurements are hidden, and its figure is that of what it trusts\n", one.name);
   if (!next) return text;
   const double errors = next->above_best.value / next->above_best.se;
   text += errors > 2.0 ? fmt::format("{} foretells best: {:.2g} % below {} ({:.1f} standard errors)\n", best.name,

@@ -26,6 +26,7 @@ struct Foretelling {
     Estimate rmse;  ///< of the foretold measurement; standard error by leaving out stretches of the log
     /// Mean squared error less that of the best; 0 of the best itself.
     Estimate above_best;
+    double mean_gate;  ///< of a correction, over the foretold measurements; NaN of what is none
   };
   std::vector<Tracker> trackers;
   std::size_t best = 0;  ///< of the trackers

@@ -278,6 +278,7 @@ kind = "planar_flight"
 period_s = 1.0
 steps = 20
 flight = { speed_mps = 100.0, leg_s = 1e5, turn_s = 1.0, turn_rate_degps = 0.0, roll_in_s = 0.0 }
+site = { range_m = 5000.0 }
 sensors = { plots = { output = "plane", position_sigma_m = 10.0, period_s = 2.0 }, radar = { output = "range_bearing", range_sigma_m = 20.0, bearing_sigma_deg = 1.0, period_s = 2.0 } }
 [sensors.radar]
 model = "range_bearing"

@@ -112,6 +112,10 @@ TEST(PlanarSources, ARunIsAFunctionOfItsKey) {
 
 TEST(PlanarSources, MistakesSayWhatWouldBeRight) {
   const auto error_of = [](const std::string& text) { return error_message([&] { scenario_of(text); }); };
+  std::string no_site = kFlight + kDoppler;
+  no_site.erase(no_site.find("site = "),
+                std::string("site = { start_east_m = 3000.0, start_north_m = 4000.0 }").size());
+  EXPECT_THAT(error_of(no_site), AllOf(HasSubstr("begin at the sensor"), HasSubstr("range_m")));
   EXPECT_THAT(error_of(kFlight + "[sensors]\n"), HasSubstr("[scenario.sensors.NAME]"));
   EXPECT_THAT(error_of(kFlight + "output = \"plane\"\n" + kPlots), HasSubstr("output"));
   EXPECT_THAT(error_of(kFlight + kPlots + "bias = [1.0]\n"), AllOf(HasSubstr("bias"), HasSubstr("2")));

@@ -286,6 +286,12 @@ std::unique_ptr<Scenario> read_planar_flight_scenario(TableReader& table) {
     parameters.sensor = read_planar_sensor(table.table("sensor"), output);
     parameters.looks = read_look_schedule(table);
   }
+  const auto tells_bearing = [](const PlanarSource& source) { return source.sensor.output->bearing >= 0; };
+  if (std::holds_alternative<SiteAtStart>(parameters.site) &&
+      (parameters.sensor.output->bearing >= 0 ||
+       std::any_of(parameters.sources.begin(), parameters.sources.end(), tells_bearing)))
+    throw table.error("site", "is missing, and targets would begin at the sensor",
+                      "a table with range_m, or start_east_m and start_north_m");
   return std::make_unique<PlanarFlightScenario>(std::move(parameters));
 }
 

@@ -27,8 +27,8 @@ void export_model(const ExportArguments& arguments) {
   const std::filesystem::path file = arguments.model;
   const std::string output =
       arguments.output.empty() ? std::filesystem::path(file).replace_extension(".onnx").string() : arguments.output;
-  check_outputs({output}, {file});
   const CorrectionModel model = read_model_file(file);
+  check_outputs({output}, {file, file.parent_path() / weights_name(model)});
   const auto* network = std::get_if<GatedRecurrent>(&model.network);
   if (!network) throw InputError(arguments.model, "holds rules (nfnn)", "a recurrent network (gru)");
   write_output(output, onnx_bytes(network->parameters(), file.stem().string()));

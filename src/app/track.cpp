@@ -92,21 +92,22 @@ class TrackRun {
     if (records_) records_->wait_for_all();
   }
 
-  void step(const Measurement& measurement) {
+  // False of a row that came too late and is left out.
+  bool step(const Measurement& measurement) {
     ++contents_.measurements;
     contents_.guess |= measurement.guess.has_value();
     contents_.last_time_s = measurement.time_s;
     if (late_) {
-      late_->step(trackers_, in_study_time(measurement), [&](const Measurement& taken, bool revised) {
+      return late_->step(trackers_, in_study_time(measurement), [&](const Measurement& taken, bool revised) {
         for (std::size_t i = 0; i < all_.size(); ++i) take(i, taken.time_s + contents_.epoch_s, revised);
       });
-      return;
     }
     if (contents_.epoch_s == 0.0)
       trackers_.step(measurement);
     else
       trackers_.step(in_study_time(measurement));
     for (std::size_t i = 0; i < all_.size(); ++i) take(i, measurement.time_s, false);
+    return true;
   }
 
   // What became of late rows; empty where there were none.
@@ -300,13 +301,14 @@ void finish(const Study& study, const TrackArguments& options, TrackRun& run, co
   const bool for_people = !options.only_text_for_programs();
   if (for_people) report(study, options, run, rows);
   for (const std::string& line : consistency_warnings(run.all())) say("truebearing: " + line);
-  if (options.foretold > 0) say_who_foretells(options, run, logs);
+  const KeptLogs foretold = options.foretold > 0 ? logs : KeptLogs();
   std::vector<Recording> tracks;
   for (auto& [number, recording] : logs)
     if (recording.truth_space) tracks.push_back(std::move(recording));
   std::optional<Scored> scored;
   if (!tracks.empty()) scored = score(study, options, run.trackers(), tracks, run.contents().epoch_s);
   run.finish();
+  if (options.foretold > 0) say_who_foretells(options, run, foretold);
   if (!scored) {
     if (options.wants_results()) write_log_results(study, options, run, rows, logs);
     return;
@@ -391,12 +393,12 @@ void track_rows(const Study& study, const TrackArguments& options) {
       say_epoch(options, epoch_s);
       run.begin_at(epoch_s);
     }
-    if (keeps) reader.append_to(recording);
     if (study.looks_back()) {
       all.push_back(reader.measurement());
+      if (keeps) reader.append_to(recording);
       continue;
     }
-    run.step(reader.measurement());
+    if (run.step(reader.measurement()) && keeps) reader.append_to(recording);
     if (reader.may_wait()) run.flush();
   }
   if (!all.empty()) run.foresee(all);

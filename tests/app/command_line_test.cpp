@@ -86,7 +86,6 @@ TEST(Program, BadInputIsStatus1AndOneLineThatNamesWhereAndWhat) {
       {"rules bad.json", "bad.json: format"},
       {"rules deep.json", "64 levels"},
       {"rules nowhere.json", "nowhere.json"},
-      {"simulate small.toml -o out", "small.toml"},
       {"tune plain.toml", "tune"},
       {"train plain.toml", "corrected"},
       {"train small.toml --tracker plain", "plain"},

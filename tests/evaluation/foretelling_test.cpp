@@ -6,6 +6,8 @@
 
 #include <cmath>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "tests/support/error_message.hpp"
 #include "truebearing/core/angle.hpp"
@@ -15,6 +17,7 @@
 #include "truebearing/motion/constant_velocity.hpp"
 #include "truebearing/tracker/filter_tracker.hpp"
 #include "truebearing/tracker/position_sensor.hpp"
+#include "truebearing/tracker/raw_tracker.hpp"
 
 namespace truebearing::foretelling_test {
 namespace {
@@ -98,7 +101,38 @@ TEST(Foretelling, MissesAreDistancesOrAngles) {
   EXPECT_EQ(quantity, "bearing_deg");
   measurement.sensor = SensorState{Eigen::Vector2d(3000.0, 0.0), Eigen::Vector2d::Zero()};
   EXPECT_NEAR(of({"range_m"}, BoundedVector::Constant(1, 4010.0)), 10.0, 1e-9);
+  measurement.sensor.reset();
+  record.space = &space_space();
+  record.x.resize(6);
+  record.x << 3000.0, 4000.0, 500.0, 0.0, 0.0, 0.0;
+  const double elevation_rad = std::atan2(500.0, 5000.0), slant_m = std::hypot(5000.0, 500.0);
+  EXPECT_NEAR(
+      of({"range_m", "bearing_deg", "elevation_deg"}, Eigen::Vector3d(slant_m, bearing_rad, elevation_rad + 0.01)),
+      0.01 * slant_m, 1e-9);
+  record.space = &plane_space();
   EXPECT_EQ(of({"frequency_hz"}, BoundedVector::Constant(1, 300.0)), -1.0);
+}
+
+// Of sensors that take turns each is hidden in turn, and not one of them all the time.
+TEST(Foretelling, EachSensorIsHiddenInTurn) {
+  Recording log = recording();
+  log.sources = {{"a", log.measured}, {"b", log.measured}};
+  for (std::size_t k = 0; k < log.measurements.size(); ++k) log.measurements[k].source = static_cast<int>(k % 2);
+  EXPECT_NEAR(static_cast<double>(foretell(trackers(30.0, 0.1), log, 1).foretold), 400.0, 3.0);
+}
+
+TEST(Foretelling, WhoHasNoEstimateWhereNothingIsShownIsLeftOut) {
+  Ensemble ensemble;
+  ensemble.add("filter", filter(1.0));
+  ensemble.add(
+      "raw", std::make_unique<RawTracker>(state_space_of_components({"east_m", "north_m"}), Eigen::Vector2d(1.0, 1.0)));
+  TrackerSet set(std::move(ensemble));
+  set.show_member("filter");
+  set.show_member("raw");
+  const Foretelling told = foretell(set, recording(), 1);
+  ASSERT_EQ(told.trackers.size(), 1u);
+  EXPECT_EQ(told.left_out, std::vector<std::string>{"raw"});
+  EXPECT_THAT(foretelling_text(told), HasSubstr("raw: has no estimate"));
 }
 
 TEST(Foretelling, ShortLogsAreRefused) {

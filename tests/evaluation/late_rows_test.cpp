@@ -142,6 +142,20 @@ TEST(LateRows, OfOneTimeAreTakenInTheOrderInWhichTheyCome) {
   EXPECT_EQ(late.records(0)[0].x, sorted.records(0)[0].x);
 }
 
+TEST(LateRows, OneMayComeBeforeTheFirst) {
+  TrackerSet late = trackers(), sorted = trackers();
+  LateRows buffer(late, 5.0);
+  const auto ignore = [](const Measurement&, bool) {};
+  const auto at = [](double time_s, double east_m) {
+    return Measurement{.time_s = time_s, .z = Eigen::Vector2d(east_m, 0.0), .sigma = {}, .sensor = {}};
+  };
+  for (const Measurement& one : {at(10, 0), at(9, -110), at(11, 100), at(12, 230)})
+    EXPECT_TRUE(buffer.step(late, one, ignore));
+  for (const Measurement& one : {at(9, -110), at(10, 0), at(11, 100), at(12, 230)}) sorted.step(one);
+  EXPECT_EQ(late.records(0)[0].x, sorted.records(0)[0].x);
+  EXPECT_FALSE(buffer.step(late, at(6, 0), ignore));
+}
+
 TEST(LateRows, TrackersThatCannotBeRunAgainAreRefused) {
   Ensemble ensemble;
   ensemble.add("fake", std::make_unique<testing::ScriptedTracker>());

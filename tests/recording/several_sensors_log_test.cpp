@@ -63,6 +63,15 @@ TEST(SeveralSensorsLog, AColumnMayNameTheSensor) {
               AllOf(HasSubstr("north_radar and south_radar apart"), HasSubstr("a column `sensor`")));
 }
 
+TEST(SeveralSensorsLog, TheSameNumbersOfTwoSensorsAreTwoRows) {
+  const std::vector<Source> two{{"a", {"east_m", "north_m"}}, {"b", {"east_m", "north_m"}}};
+  const Recording log = read("time_s,sensor,east_m,north_m\n1,a,100,0\n1,b,100,0\n2,a,200,0\n2,a,200,0\n", two);
+  EXPECT_EQ(log.measurements.size(), 3u);
+  EXPECT_EQ(log.counts.repeated, 1);
+  EXPECT_THAT(error_of("time_s,sensor,east_m,north_m\n0,radar,3,4\n"),
+              AllOf(HasSubstr("radar"), HasSubstr("one of laser")));
+}
+
 TEST(SeveralSensorsLog, ARowIsOfOneSensor) {
   EXPECT_THAT(error_of(kHeader + "0,3,4,5,,\n"), AllOf(HasSubstr("log.csv:2"), HasSubstr("a row for each sensor")));
 }

@@ -34,7 +34,7 @@ const std::string kLimit = "[trackers.limit]\nkind = \"particle_limit\"\nparticl
 
 std::string study_of(const std::string& output, const std::string& sensor, const std::string& more = {}) {
   return "name = \"small\"\n[scenario]\nkind = \"planar_flight\"\noutput = \"" + output +
-         "\"\nperiod_s = 1.0\nsteps = 30\n" + kFlight + sensor + kLimit + more;
+         "\"\nperiod_s = 1.0\nsteps = 30\nsite = { range_m = 20000.0 }\n" + kFlight + sensor + kLimit + more;
 }
 
 struct Loaded {

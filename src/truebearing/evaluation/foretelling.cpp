@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <map>
+#include <utility>
 
 #include "truebearing/core/angle.hpp"
 #include "truebearing/core/constants.hpp"
@@ -14,46 +16,47 @@
 namespace truebearing {
 namespace {
 
-// Of one log: neighbouring errors go together, and stretches of it are taken for independent.
-constexpr std::size_t kStretches = 20;
+// Of one log: neighbouring errors go together, and stretches of it are taken for independent. The 97.5 % point of
+// Student's t for the mean of so many.
+constexpr std::size_t kStretches = 12;
+constexpr double kStudent = 2.2;
 
 int place_in(const std::vector<std::string>& names, const std::string& name) {
   const auto found = std::find(names.begin(), names.end(), name);
   return found == names.end() ? -1 : static_cast<int>(found - names.begin());
 }
 
-// What was missed, step by step; NaN where a tracker had no estimate.
-using Misses = std::vector<std::vector<double>>;  // [tracker][foretold]
+// Of one hidden measurement, by tracker: what it missed, NaN where it had no estimate, and how far a correction's gate was
+// open, NaN of what is none.
+struct Foretold {
+  std::size_t row;
+  std::vector<double> missed, gates;
+};
 
+// Of each sensor `steps` rows are hidden and as many shown in turn.
 void hide_and_foretell(const TrackerSet& trackers, const Recording& recording, std::size_t steps, bool first_half,
-                       std::string& quantity, Misses& misses, std::vector<double>& gate_sums) {
+                       std::string& quantity, std::vector<Foretold>& all) {
   TrackerSet set = trackers.fresh();
-  const auto is_hidden = [&](std::size_t k) { return (k / steps % 2 == 0) == first_half; };
-  std::vector<Measurement> shown = recording.measurements;
-  for (std::size_t k = 0; k < shown.size(); ++k)
-    if (is_hidden(k)) shown[k].z.setConstant(kNaN);
-  set.foresee(shown);
-  for (std::size_t k = 0; k < shown.size(); ++k) {
-    set.step(shown[k]);
+  std::map<int, std::size_t> seen;  // rows of each sensor
+  for (std::size_t k = 0; k < recording.measurements.size(); ++k) {
     const Measurement& measurement = recording.measurements[k];
-    const bool is_last_hidden = is_hidden(k) && k % steps == steps - 1;
-    if (!is_last_hidden || is_unusable(recording, measurement)) continue;
-    std::vector<double> missed, gates;
+    const std::size_t own = seen[measurement.source]++;
+    const bool is_hidden = (own / steps % 2 == 0) == first_half;
+    Measurement shown = measurement;
+    if (is_hidden) shown.z.setConstant(kNaN);
+    set.step(shown);
+    if (!is_hidden || own % steps != steps - 1 || is_unusable(recording, measurement)) continue;
+    Foretold one{k, {}, {}};
     for (int i = 0; i < set.size(); ++i) {
       const std::span<const StepRecord> records = set.records(i);
       std::string of;
-      std::optional<double> one;
-      if (records.size() == 1) one = miss(components_of(recording, measurement), measurement, records[0], of);
-      if (one && quantity.empty()) quantity = of;
-      missed.push_back(one && of == quantity ? *one : kNaN);
-      const bool is_corrected = records.size() == 1 && records[0].correction;
-      gates.push_back(is_corrected ? records[0].correction->gate : kNaN);
+      std::optional<double> missed;
+      if (records.size() == 1) missed = miss(components_of(recording, measurement), measurement, records[0], of);
+      if (missed && quantity.empty()) quantity = of;
+      one.missed.push_back(missed && of == quantity ? *missed : kNaN);
+      one.gates.push_back(missed && records[0].correction ? records[0].correction->gate : kNaN);
     }
-    if (std::any_of(missed.begin(), missed.end(), [](double error) { return !std::isfinite(error); })) continue;
-    for (std::size_t i = 0; i < missed.size(); ++i) {
-      misses[i].push_back(missed[i]);
-      gate_sums[i] += gates[i];
-    }
+    all.push_back(std::move(one));
   }
 }
 
@@ -83,7 +86,7 @@ std::optional<double> miss(const std::vector<std::string>& components, const Mea
     const int state = record.space->component_index(components[i]);
     const bool is_place = components[i] == "position_m" || components[i] == "east_m" || components[i] == "north_m" ||
                           components[i] == "up_m" || components[i].starts_with("lorenz_");
-    if (state < 0 || !is_place) continue;
+    if (state < 0 || !is_place || static_cast<Eigen::Index>(i) >= z.size()) continue;
     const double error = z[static_cast<Eigen::Index>(i)] - x[state];
     squared += error * error;
     ++places;
@@ -93,43 +96,63 @@ std::optional<double> miss(const std::vector<std::string>& components, const Mea
     return std::sqrt(squared);
   }
   const int east = record.space->component_index("east_m"), north = record.space->component_index("north_m");
-  const int range = place_in(components, "range_m"), bearing = place_in(components, "bearing_deg");
-  if (east < 0 || north < 0 || (range < 0 && bearing < 0)) return std::nullopt;
+  const int range = place_in(components, "range_m"), bearing = place_in(components, "bearing_deg"),
+            elevation = place_in(components, "elevation_deg");
+  if (east < 0 || north < 0 || (range < 0 && bearing < 0) || z.size() < static_cast<Eigen::Index>(components.size()))
+    return std::nullopt;
+  const int up = record.space->component_index("up_m");
   const Eigen::Vector2d sight = Eigen::Vector2d(x[east], x[north]) - sensor.position_m;
+  const double height_m = up < 0 ? 0.0 : x[up] - sensor.up_m, range_m = std::hypot(sight.norm(), height_m);
   const double turned_rad = bearing < 0 ? 0.0 : wrap_pi(z[bearing] - std::atan2(sight.x(), sight.y()));
+  const double raised_rad = elevation < 0 || up < 0 ? 0.0 : z[elevation] - std::atan2(height_m, sight.norm());
   if (range < 0) {
     quantity = "bearing_deg";
-    return degrees(std::abs(turned_rad));
+    return degrees(std::hypot(turned_rad, raised_rad));
   }
   // Slant ranges are held against slant ranges.
-  const int up = record.space->component_index("up_m");
-  const double height_m = up < 0 ? 0.0 : x[up] - sensor.up_m, range_m = std::hypot(sight.norm(), height_m);
   quantity = bearing < 0 ? "range_m" : "position_m";
-  return std::hypot(z[range] - range_m, sight.norm() * turned_rad);
+  return std::hypot(std::hypot(z[range] - range_m, sight.norm() * turned_rad), range_m * raised_rad);
 }
 
 Foretelling foretell(const TrackerSet& trackers, const Recording& recording, int steps) {
   constexpr std::size_t kLeast = 4;
-  Foretelling told{steps, {}, 0, {}, 0};
-  Misses misses(static_cast<std::size_t>(trackers.size()));
-  std::vector<double> gate_sums(misses.size());
+  Foretelling told{steps, {}, 0, {}, 0, {}};
+  std::vector<Foretold> all;
   for (const bool first_half : {false, true})
-    hide_and_foretell(trackers, recording, static_cast<std::size_t>(steps), first_half, told.quantity, misses,
-                      gate_sums);
-  told.foretold = misses.front().size();
-  if (told.foretold < kLeast)
-    throw InputError("the log",
-                     fmt::format("has {} measurements that all trackers foretell {} steps ahead", told.foretold, steps),
-                     fmt::format("{} or more, of places, ranges or bearings of one target", kLeast));
-  for (std::size_t i = 0; i < misses.size(); ++i) {
-    told.trackers.push_back({trackers.name(static_cast<int>(i)),
-                             pooled_rmse(stretches_of(misses[i])),
-                             {0.0, 0.0},
-                             gate_sums[i] / static_cast<double>(told.foretold)});
-    if (told.trackers[i].rmse.value < told.trackers[told.best].rmse.value) told.best = i;
+    hide_and_foretell(trackers, recording, static_cast<std::size_t>(steps), first_half, told.quantity, all);
+  std::sort(all.begin(), all.end(), [](const Foretold& a, const Foretold& b) { return a.row < b.row; });
+  std::vector<std::size_t> who;  // has estimates where measurements are hidden
+  for (std::size_t i = 0; i < static_cast<std::size_t>(trackers.size()); ++i) {
+    const bool has_any =
+        std::any_of(all.begin(), all.end(), [&](const Foretold& one) { return std::isfinite(one.missed[i]); });
+    if (has_any)
+      who.push_back(i);
+    else
+      told.left_out.push_back(trackers.name(static_cast<int>(i)));
   }
-  for (std::size_t i = 0; i < misses.size(); ++i)
-    if (i != told.best) told.trackers[i].above_best = difference_of(misses[i], misses[told.best]);
+  std::erase_if(all, [&](const Foretold& one) {
+    return !std::all_of(who.begin(), who.end(), [&](std::size_t i) { return std::isfinite(one.missed[i]); });
+  });
+  told.foretold = all.size();
+  if (who.empty() || all.size() < kLeast)
+    throw InputError("the log",
+                     fmt::format("has {} measurements that trackers foretell {} steps ahead", all.size(), steps),
+                     fmt::format("{} or more, of places, ranges or bearings of one target", kLeast));
+  std::vector<std::vector<double>> missed(who.size());
+  for (std::size_t w = 0; w < who.size(); ++w) {
+    double gates = 0.0;
+    for (const Foretold& one : all) {
+      missed[w].push_back(one.missed[who[w]]);
+      gates += one.gates[who[w]];
+    }
+    told.trackers.push_back({trackers.name(static_cast<int>(who[w])),
+                             pooled_rmse(stretches_of(missed[w])),
+                             {0.0, 0.0},
+                             gates / static_cast<double>(all.size())});
+    if (told.trackers[w].rmse.value < told.trackers[told.best].rmse.value) told.best = w;
+  }
+  for (std::size_t w = 0; w < who.size(); ++w)
+    if (w != told.best) told.trackers[w].above_best = difference_of(missed[w], missed[told.best]);
   return told;
 }
 
@@ -150,15 +173,18 @@ std::string foretelling_text(const Foretelling& told) {
   std::string text = aligned(rows);
   text += fmt::format("{} measurements, {} step{} ahead, each half of the log foretold from the other\n", told.foretold,
                       told.steps, told.steps == 1 ? "" : "s");
+  for (const std::string& name : told.left_out)
+    text += fmt::format("{}: has no estimate where measurements are hidden\n", name);
   for (const Foretelling::Tracker& one : told.trackers)
     if (one.mean_gate < kShut)
       text += fmt::format(
           "{}: its gate is shut where measurements are hidden, and its figure is that of what it trusts\n", one.name);
   if (!next) return text;
   const double errors = next->above_best.value / next->above_best.se;
-  text += errors > 2.0 ? fmt::format("{} foretells best: {:.2g} % below {} ({:.1f} standard errors)\n", best.name,
-                                     100.0 * (1.0 - best.rmse.value / next->rmse.value), next->name, errors)
-                       : fmt::format("{} and {} foretell alike: no difference can be told\n", best.name, next->name);
+  text += errors > kStudent
+              ? fmt::format("{} foretells best: {:.2g} % below {} ({:.1f} standard errors)\n", best.name,
+                            100.0 * (1.0 - best.rmse.value / next->rmse.value), next->name, errors)
+              : fmt::format("{} and {} foretell alike: no difference can be told\n", best.name, next->name);
   return text;
 }
 

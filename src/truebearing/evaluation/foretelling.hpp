@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scores without truth, by measurements that trackers have not seen: of a log n are shown and n hidden in turn, and
-// what a tracker foretells of the last hidden one, n steps ahead, is held against it. Then the other half is hidden. The
-// measurements' own noise is in every error alike, so that the differences are the trackers'.
+// Scores without truth, by measurements that trackers have not seen: of each sensor of a log n rows are shown and n hidden
+// in turn, and what a tracker foretells of the last hidden one, n of its steps ahead, is held against it. Then the other
+// half is hidden. The measurements' own noise is in every error alike, so that the differences are the trackers'. Who looks
+// back is scored as the filter that it is without knowing what comes. Where a sensor stands is what its measurements say,
+// else the origin; biases that a tracker takes off are not taken off here.
 #pragma once
 
 #include <cstddef>
@@ -23,17 +25,19 @@ struct Foretelling {
 
   struct Tracker {
     std::string name;
-    Estimate rmse;  ///< of the foretold measurement; standard error by leaving out stretches of the log
+    Estimate rmse;  ///< of the foretold measurement; standard error by leaving out one of twelve stretches of the log
     /// Mean squared error less that of the best; 0 of the best itself.
     Estimate above_best;
     double mean_gate;  ///< of a correction, over the foretold measurements; NaN of what is none
   };
   std::vector<Tracker> trackers;
-  std::size_t best = 0;  ///< of the trackers
+  std::size_t best = 0;               ///< of the trackers
+  std::vector<std::string> left_out;  ///< that have no estimate where measurements are hidden
 };
 
 /// How far a record is from a measurement of those components: in m of a place on the line, in the plane or in space, of
-/// a range or by range and bearing from where the sensor was, else in degrees of a bearing; nothing of others. `quantity`
+/// a range or by range, bearing and elevation from where the sensor was, else in degrees of bearing and elevation; nothing
+/// of others. `quantity`
 /// becomes its name.
 std::optional<double> miss(const std::vector<std::string>& components, const Measurement& measurement,
                            const StepRecord& record, std::string& quantity);

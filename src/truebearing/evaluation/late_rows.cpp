@@ -5,6 +5,7 @@
 #include <iterator>
 #include <utility>
 
+#include "truebearing/core/constants.hpp"
 #include "truebearing/core/error.hpp"
 
 namespace truebearing {
@@ -28,19 +29,19 @@ LateRows::LateRows(const TrackerSet& trackers, double keep_s) : keep_s_(keep_s) 
                      "--sort-window");
 }
 
-void LateRows::step(TrackerSet& trackers, const Measurement& measurement, const Publish& publish) {
+bool LateRows::step(TrackerSet& trackers, const Measurement& measurement, const Publish& publish) {
   const double time_s = measurement.time_s;
   if (kept_.empty() || !(time_s < kept_.back().time_s)) {
     kept_.push_back(measurement);
     run(trackers, first_ + kept_.size() - 1, publish, false);
     forget(kept_.back().time_s - keep_s_);
-    return;
+    return true;
   }
   const auto is_after = [](double at_s, const Checkpoint& checkpoint) { return at_s < checkpoint.time_s; };
   const auto after = std::upper_bound(checkpoints_.begin(), checkpoints_.end(), time_s, is_after);
   if (time_s < kept_.back().time_s - keep_s_ || after == checkpoints_.begin()) {
     ++too_late_;
-    return;
+    return false;
   }
   const auto from = std::prev(after);
   const std::size_t begin = from->next;
@@ -58,6 +59,7 @@ void LateRows::step(TrackerSet& trackers, const Measurement& measurement, const 
       run(trackers, k, publish, k != number);
     again_ += k != number;
   }
+  return true;
 }
 
 // Takes one of those that are kept, after a checkpoint where one is due.
@@ -65,7 +67,9 @@ void LateRows::run(TrackerSet& trackers, std::size_t number, const Publish& publ
   const Measurement& measurement = kept(number);
   if (checkpoints_.empty() || measurement.time_s >= checkpoints_.back().time_s + keep_s_ / kCheckpoints) {
     if (spare_.empty()) spare_.push_back(trackers.fresh());
-    checkpoints_.push_back({std::move(spare_.back()), number, measurement.time_s});
+    // Nothing is before the first of them.
+    const bool is_first = checkpoints_.empty() && number == 0;
+    checkpoints_.push_back({std::move(spare_.back()), number, is_first ? -kInfinity : measurement.time_s});
     spare_.pop_back();
     checkpoints_.back().trackers.assign(trackers);
   }

@@ -22,8 +22,8 @@ class LateRows {
   /// (Tracker::assign()).
   LateRows(const TrackerSet& trackers, double keep_s);
 
-  /// One that is later than keep_s is counted and does nothing.
-  void step(TrackerSet& trackers, const Measurement& measurement, const Publish& publish);
+  /// One that is later than keep_s is counted and does nothing: false.
+  bool step(TrackerSet& trackers, const Measurement& measurement, const Publish& publish);
 
   std::size_t taken() const { return taken_; }        ///< late ones that were put where they belong
   std::size_t too_late() const { return too_late_; }  ///< that were not

@@ -28,6 +28,8 @@ bool is_of_radar(const Recording& recording) {
 }
 
 void check_measured(const TargetMotionBound& bound, const Recording& recording) {
+  if (!recording.sources.empty())
+    throw InputError(kBound, "cannot be made for several sensors", "a scenario or a log of one");
   if (recording.measured != std::vector<std::string>{"bearing_deg"} &&
       !measures_bearing_and_frequency(recording.measured) && !is_of_radar(recording))
     throw InputError(

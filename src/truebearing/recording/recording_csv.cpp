@@ -102,8 +102,8 @@ MeasurementLog::MeasurementLog(CsvReader csv, RecordingOptions options)
   if (!options_.sources.empty()) find_sources();
   // Rows that are in order by clocks that disagree are so far out of it by one that is right.
   if (const auto [least, most] = std::minmax_element(options_.clock_offsets_s.begin(), options_.clock_offsets_s.end());
-      least != most)
-    options_.sort_window_s = std::max(options_.sort_window_s, *most - *least);
+      least != most && options_.late_keep_s == 0.0)
+    options_.sort_window_s += *most - *least;
 }
 
 // Where each sensor's components stand among all that is measured; nowhere for one that the log has no columns of.
@@ -142,10 +142,12 @@ void MeasurementLog::find_sources() {
 std::size_t MeasurementLog::source_of_row(const Measurement& measurement) const {
   if (layout_.source) {
     const std::string name(csv_.text(*layout_.source));
-    for (std::size_t i = 0; i < options_.sources.size(); ++i)
-      if (options_.sources[i].name == name && !places_of_[i].empty()) return i;
-    std::vector<std::string> names;
-    for (const Source& source : options_.sources) names.push_back(source.name);
+    std::vector<std::string> names;  // of those whose columns the log has
+    for (std::size_t i = 0; i < options_.sources.size(); ++i) {
+      if (places_of_[i].empty()) continue;
+      if (options_.sources[i].name == name) return i;
+      names.push_back(options_.sources[i].name);
+    }
     throw csv_.error(*layout_.source, "is " + as_shown(name), fmt::format("one of {}", fmt::join(names, ", ")));
   }
   const auto filled = measurement.z.array().isFinite().count();
@@ -281,7 +283,8 @@ bool MeasurementLog::read_row() {
   row.line = csv_.line();
   for (const std::size_t column : columns_) row.cells.push_back(csv_.number(column));
   row.measurement = read_measurement(row.cells, row.time_s);
-  if (!options_.clock_offsets_s.empty())
+  // A row that fills nothing and names no sensor is nobody's.
+  if (!options_.clock_offsets_s.empty() && (layout_.source || !row.measurement.z.array().isNaN().all()))
     row.time_s = row.measurement.time_s -= options_.clock_offsets_s[static_cast<std::size_t>(row.measurement.source)];
   check_lateness(row.time_s);
   row.number = rows_++;
@@ -306,7 +309,8 @@ bool MeasurementLog::next() {
     }
     Row row = waiting_.top();
     waiting_.pop();
-    const bool is_repeated = given_ > 0 && row.time_s == row_.time_s && identical(row.cells, row_.cells);
+    const bool is_repeated = given_ > 0 && row.time_s == row_.time_s &&
+                             row.measurement.source == row_.measurement.source && identical(row.cells, row_.cells);
     if (is_repeated) {
       ++columns_and_counts_.counts.repeated;
       continue;

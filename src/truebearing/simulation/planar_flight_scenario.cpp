@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <numeric>
 #include <string>
 
@@ -187,6 +188,8 @@ Recording PlanarFlightScenario::simulate_several(const RunKey& key) const {
 
   const SeenFlight seen = fly(looks, scenario, process);
   const Eigen::Vector2d site_m = std::visit(PlaceSite{seen.flown, scenario}, parameters_.site);
+  const bool stand_apart = std::any_of(parameters_.sources.begin(), parameters_.sources.end(),
+                                       [](const PlanarSource& source) { return !source.site_m.isZero(); });
   Recording recording = begin_recording();
   for (Eigen::Index k = 0; k < seen.flown.cols(); ++k) {
     const auto& [time_s, place] = times[static_cast<std::size_t>(k)];
@@ -197,6 +200,7 @@ Recording PlanarFlightScenario::simulate_several(const RunKey& key) const {
     from_sensor.head<2>() -= source.site_m;
     Measurement taken = source.sensor.measure(time_s, from_sensor, sigma_m[place], measurement);
     taken.source = static_cast<int>(place);
+    if (stand_apart) taken.sensor = SensorState{source.site_m, Eigen::Vector2d::Zero()};
     if (source.bias.size() > 0) taken.z += source.bias;
     if (const int bearing = source.sensor.output->bearing; bearing >= 0) taken.z[bearing] = wrap_pi(taken.z[bearing]);
     recording.measurements.push_back(std::move(taken));
@@ -279,7 +283,12 @@ std::unique_ptr<Scenario> read_planar_flight_scenario(TableReader& table) {
   if (sources) {
     std::vector<std::string> names = sources->keys();
     std::sort(names.begin(), names.end());
-    for (const std::string& name : names) parameters.sources.push_back(read_source(name, sources->table(name)));
+    constexpr double kMostLooks = 1e6;  // of a sensor in a run
+    for (const std::string& name : names) {
+      parameters.sources.push_back(read_source(name, sources->table(name)));
+      if (parameters.period_s * parameters.steps > kMostLooks * parameters.sources.back().period_s)
+        throw sources->error(name, "looks too often for so long a run", fmt::format("at most {:g} looks", kMostLooks));
+    }
     sources->finish();
     if (names.empty()) throw table.error("sensors", "names none", "tables [scenario.sensors.NAME]");
   } else {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include "truebearing/core/constants.hpp"
 #include "truebearing/core/suggestion.hpp"
 #include "truebearing/correction/corrected_tracker.hpp"
 #include "truebearing/study/configuration_text.hpp"
@@ -56,11 +57,12 @@ void Study::smooth_all(double lag_s, const std::function<void(const std::string&
     smoother.kind = kSmoother;
     smoother.configuration = std::make_shared<const toml::table>();
     smoother.smoother = SmootherSpec{spec.name, lag_s};
-    const bool is_named = [&] {
-      const std::vector<std::string> names = names_of(trackers_);
-      return std::find(names.begin(), names.end(), smoother.name) != names.end();
-    }();
-    if (is_named) continue;
+    const auto named = std::find_if(trackers_.begin(), trackers_.end(),
+                                    [&](const TrackerSpec& other) { return other.name == smoother.name; });
+    if (named != trackers_.end()) {  // the study has it, but for the lag
+      if (named->smoother && lag_s < kInfinity) named->smoother->lag_s = lag_s;
+      continue;
+    }
     if (spec.correction || !can_be_smoothed(*make_tracker(spec.name)))
       left_out(spec.name);
     else

@@ -44,7 +44,8 @@ class BiasedSensor final : public AnySensor {
  private:
   Measurement unbiased(const Measurement& measurement) const {
     Measurement mended = measurement;
-    if (mended.z.size() == bias_.size()) mended.z -= bias_;
+    // What a sensor leaves alone may stand behind what it takes.
+    if (mended.z.size() >= bias_.size()) mended.z.head(bias_.size()) -= bias_;
     return mended;
   }
 

@@ -68,6 +68,8 @@ void FilterTracker::check() const {
     throw std::invalid_argument("output_pull needs measured positions");
   if (options_.output_pull > 0.0 && options_.ahead_s > 0.0)
     throw std::invalid_argument("output_pull is of the present");
+  if (!options_.gate_nis_of.empty() && options_.gate_nis_of.size() != sensor_->measured().sources.size())
+    throw std::invalid_argument("there is a gate for each of several sensors");
   if (space_->size() > state_->size() || sensor_->states() > state_->size())
     throw std::invalid_argument("the state is shorter than its space, or than what the sensor looks at");
 }

@@ -14,6 +14,12 @@
 namespace truebearing {
 namespace {
 
+std::vector<std::string> numbered_names(std::size_t size) {
+  std::vector<std::string> names;
+  for (std::size_t i = 1; i <= size; ++i) names.push_back(fmt::format("z_{}", i));
+  return names;
+}
+
 // A log does not name what it measures: the positions of the state, where there are as many.
 std::vector<std::string> measured_names(const StateSpace& space, std::size_t size) {
   const int position = space.quantity_index("position_m");
@@ -21,10 +27,7 @@ std::vector<std::string> measured_names(const StateSpace& space, std::size_t siz
   if (position >= 0)
     for (const int index : space.quantities[static_cast<std::size_t>(position)].indices)
       names.push_back(space.components[static_cast<std::size_t>(index)]);
-  if (names.size() == size) return names;
-  names.clear();
-  for (std::size_t i = 1; i <= size; ++i) names.push_back(fmt::format("z_{}", i));
-  return names;
+  return names.size() == size ? names : numbered_names(size);
 }
 
 // The rows of one track of the log.
@@ -66,7 +69,12 @@ Recording make_recording(StepLog part) {
   const auto log = std::make_shared<const StepLog>(std::move(part));
   Recording recording;
   recording.steps = log;
-  recording.measured = measured_names(*log->space, static_cast<std::size_t>(log->z.front().size()));
+  // Of sensors of several sizes none is taken for positions.
+  const auto [least, most] = std::minmax_element(log->z.begin(), log->z.end(),
+                                                 [](const auto& a, const auto& b) { return a.size() < b.size(); });
+  recording.measured = least->size() == most->size()
+                           ? measured_names(*log->space, static_cast<std::size_t>(most->size()))
+                           : numbered_names(static_cast<std::size_t>(most->size()));
   for (std::size_t k = 0; k < log->records.size(); ++k) {
     Measurement measurement;
     measurement.time_s = log->records[k].time_s;

@@ -16,6 +16,7 @@
 #include "truebearing/core/suggestion.hpp"
 #include "truebearing/io/key_survey.hpp"
 #include "truebearing/study/study.hpp"
+#include "truebearing/study/tracker_registry.hpp"
 
 namespace truebearing {
 namespace {
@@ -32,7 +33,7 @@ bool is_named_by_user(const std::string& table, const std::string& key) {
 
 bool is_left_out(const std::string& table, const std::map<std::string, SurveyedKey>& keys) {
   return keys.contains("log_uniform") || table == "sets" || table == "scoring.loss_thresholds" ||
-         table.starts_with("sets.") || table.starts_with("published.");
+         table == "log.columns" || table.starts_with("sets.") || table.starts_with("published.");
 }
 
 KeySurvey::Tables surveyed_tables() {
@@ -47,6 +48,12 @@ KeySurvey::Tables surveyed_tables() {
     for (const auto& [key, entry] : keys)
       if (!is_named_by_user(table, key)) tables[table].emplace(key, entry);
   }
+  // Read as text, since a program may bring kinds of its own.
+  SurveyedKey& kind = tables["tracker"]["kind"];
+  std::vector<std::string> kinds = tracker_kinds();
+  kinds.insert(kinds.end(), {"corrected", kSmoother});
+  kind.choices.insert(kinds.begin(), kinds.end());
+  kind.valid.insert(fmt::format("\"{}\"", fmt::join(kind.choices, "\", \"")));
   return tables;
 }
 
@@ -191,7 +198,7 @@ void print_keys(const KeysArguments& arguments) {
         "`truebearing keys motion` or `keys singer` prints a part.\nIn place of `tracker` stands the name of a "
         "tracker, `[trackers.NAME]`; `scenario` is a table of the study or a file of its own. A\ndistribution is "
         "`{{ uniform = [low, high] }}`, `{{ normal = [mean, standard deviation] }}`, `{{ log_uniform = [low, high] "
-        "}}`\nor `{{ choice = [a, b] }}`. `only of`: the kinds or models that have the key, where not all do; of a tracker this tells `corrected` only.\n");
+        "}}`\nor `{{ choice = [a, b] }}`. `only of`: the kinds or models that have the key, where not all do.\n");
   for (const auto& [table, keys] : tables) {
     Keys shown;
     for (const auto& [key, entry] : keys)

@@ -13,24 +13,31 @@ namespace {
 thread_local KeySurvey* current = nullptr;
 
 // Tables of a study; every other table at the top of a file is one of a scenario.
-constexpr std::array<std::string_view, 6> kTablesOfStudies{"scoring", "tuning", "log", "recorded", "sets", "published"};
+constexpr std::array<std::string_view, 7> kTablesOfStudies{"scoring", "tuning",  "log",      "recorded",
+                                                           "sets",    "sensors", "published"};
 
-// "trackers.plain.modes[0].motion" as "tracker.modes.motion".
+// Whose keys are names of the user's own.
+bool holds_names(const TableReader& reader) {
+  const std::string& path = reader.path();
+  return path == "trackers" || path == "sensors" || path == "scenario.sensors";
+}
+
+// "trackers.plain.modes[0].motion" as "tracker.modes.motion", "sensors.radar" as "sensors".
 std::string table_name(const TableReader& reader) {
   std::string name;
   std::istringstream parts(reader.path());
-  bool names_tracker = false;
+  bool is_users = false;
   for (std::string part; std::getline(parts, part, '.');) {
     part = part.substr(0, part.find('['));
-    if (name.empty() && part == "trackers") {
-      name = "tracker";
-      names_tracker = true;
-    } else if (names_tracker) {
-      names_tracker = false;
-    } else {
-      name += (name.empty() ? "" : ".") + part;
+    if (is_users) {
+      is_users = false;
+      continue;
     }
+    is_users = (name.empty() && part == "trackers") || (part == "sensors" && (name.empty() || name == "scenario"));
+    name += (name.empty() ? "" : ".") + (part == "trackers" ? "tracker" : part);
   }
+  // A scenario in a file of its own names its sensors as a study does; they have an output.
+  if (name == "sensors" && reader.raw()->contains("output")) name = "scenario.sensors";
   if (name.empty()) return reader.raw()->contains("kind") ? "scenario" : "study";
   const std::string first = name.substr(0, name.find('.'));
   if (first == "tracker" || first == "scenario" ||
@@ -40,11 +47,13 @@ std::string table_name(const TableReader& reader) {
 }
 
 std::string kind_of(const TableReader& reader) {
-  if (reader.path().starts_with("trackers.") && std::count(reader.path().begin(), reader.path().end(), '.') == 1)
-    return reader.raw()->contains("kind") ? (*reader.raw())["kind"].value_or(std::string()) : std::string();
-  for (const char* key : {"kind", "model"})
+  const bool is_tracker =
+      reader.path().starts_with("trackers.") && std::count(reader.path().begin(), reader.path().end(), '.') == 1;
+  for (const char* key : {"kind", "model"}) {
     if (const toml::node* node = reader.raw()->get(key))
       if (const auto* text = node->as_string()) return text->get();
+    if (is_tracker) break;  // whose model is a file
+  }
   return {};
 }
 
@@ -59,10 +68,17 @@ KeySurvey::~KeySurvey() {
 }
 
 SurveyedKey* surveyed(const TableReader& reader, const std::string& key) {
-  if (!current || reader.path() == "trackers") return nullptr;  // whose keys are names of the user's own
+  if (!current || holds_names(reader)) return nullptr;
   SurveyedKey& entry = current->tables_[table_name(reader)][key];
-  if (std::string kind = kind_of(reader); !kind.empty()) entry.kinds.insert(std::move(kind));
+  std::string kind = kind_of(reader);
+  if (const auto noted = current->kinds_.find(reader.path()); kind.empty() && noted != current->kinds_.end())
+    kind = noted->second;
+  if (!kind.empty()) entry.kinds.insert(std::move(kind));
   return &entry;
+}
+
+void note_kind(const TableReader& reader, const std::string& kind) {
+  if (current) current->kinds_[reader.path()] = kind;
 }
 
 }  // namespace truebearing

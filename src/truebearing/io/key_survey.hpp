@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "truebearing/io/table_reader.hpp"
 
@@ -15,6 +16,7 @@ namespace truebearing {
 struct SurveyedKey {
   std::string type;                ///< empty where only its presence was asked for
   std::set<std::string> valid;     ///< "a number > 0", or the names to choose from; several where readers differ
+  std::set<std::string> choices;   ///< of all readers, where the values are names
   std::set<std::string> defaults;  ///< as written in a study
   bool optional = false;
   std::set<std::string> kinds;  ///< `kind` or `model` of the tables that it was read from
@@ -33,12 +35,17 @@ class KeySurvey {
 
  private:
   friend SurveyedKey* surveyed(const TableReader& reader, const std::string& key);
+  friend void note_kind(const TableReader& reader, const std::string& kind);
   Tables tables_;
+  std::map<std::string, std::string> kinds_;  // by path, of tables that do not say theirs
   KeySurvey* before_;
 };
 
 /// The entry of a key, or nullptr where nobody surveys.
 SurveyedKey* surveyed(const TableReader& reader, const std::string& key);
+
+/// Of which kind a table is that is read without its `kind`, as a tracker's.
+void note_kind(const TableReader& reader, const std::string& kind);
 
 /// What messages say of a range: "a number in [0, 1]".
 std::string describe(Range range);

@@ -111,6 +111,11 @@ void note(const TableReader& reader, const std::string& key, const char* type, c
   if (!valid.empty()) entry->valid.insert(valid);
 }
 
+void note_choice(const TableReader& reader, const std::string& key, const std::vector<std::string>& choices) {
+  note(reader, key, "text", fmt::format("\"{}\"", fmt::join(choices, "\", \"")));
+  if (SurveyedKey* entry = surveyed(reader, key)) entry->choices.insert(choices.begin(), choices.end());
+}
+
 /// And what it is where it is not said.
 void note_default(const TableReader& reader, const std::string& key, const std::string& value) {
   if (SurveyedKey* entry = surveyed(reader, key)) entry->defaults.insert(value);
@@ -241,7 +246,7 @@ std::string TableReader::text_or(const std::string& key, std::string fallback) {
 }
 
 std::string TableReader::choice(const std::string& key, const std::vector<std::string>& valid) {
-  note(*this, key, "text", fmt::format("\"{}\"", fmt::join(valid, "\", \"")));
+  note_choice(*this, key, valid);
   std::string value = text(key);
   if (std::find(valid.begin(), valid.end(), value) == valid.end())
     throw error(key, "is \"" + value + "\"", suggestion(value, valid));
@@ -250,7 +255,7 @@ std::string TableReader::choice(const std::string& key, const std::vector<std::s
 
 std::string TableReader::choice_or(const std::string& key, const std::vector<std::string>& valid,
                                    std::string fallback) {
-  note(*this, key, "text", fmt::format("\"{}\"", fmt::join(valid, "\", \"")));
+  note_choice(*this, key, valid);
   note_default(*this, key, '"' + fallback + '"');
   return has(key) ? choice(key, valid) : std::move(fallback);
 }

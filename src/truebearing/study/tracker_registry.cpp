@@ -8,6 +8,7 @@
 
 #include "truebearing/core/error.hpp"
 #include "truebearing/core/suggestion.hpp"
+#include "truebearing/io/key_survey.hpp"
 #include "truebearing/study/angle_trackers.hpp"
 #include "truebearing/study/batch_trackers.hpp"
 #include "truebearing/study/filter_trackers.hpp"
@@ -79,6 +80,7 @@ std::unique_ptr<Tracker> make_tracker(const std::string& kind, TableReader& conf
     valid.insert(valid.end(), {"corrected", kSmoother});
     throw configuration.error("kind", "is \"" + kind + "\"", suggestion(kind, valid));
   }
+  note_kind(configuration, kind);
   std::unique_ptr<Tracker> tracker = maker(configuration);
   configuration.finish();
   return tracker;

@@ -9,13 +9,16 @@
 A marker names a study, what stands in each column and in each row:
 
     <!-- table: STUDY
-    columns: HEADING = FIGURE | HEADING = FIGURE @ STUDY/SET
-    rows: TRACKER | LABEL = TRACKER
+    columns: HEADING = FIGURE | HEADING = FIGURE of TRACKER @ STUDY/SET
+    rows: TRACKER | LABEL = TRACKER @ STUDY/SET
     -->
     <!-- end of table -->
 
-FIGURE is `rmse QUANTITY` and `metric NAME` (each with its standard error), `value NAME NAME...` (metrics without), `ratio`
-(to plain, each quantity), `nees` or `coverage`. A row may also be one of the study's published ones.
+FIGURE is `rmse QUANTITY` and `metric NAME` (each with its standard error), `value NAME NAME...` (metrics and quantities' RMSE
+without), `percent NAME...`, `root NAME` (of a square in dB),
+`over TRACKER NAME NAME...` (each over that of the tracker or bound), `ratio` (to plain, each
+quantity), `nees` or `coverage`. NAME:600 is the metric at 600 s. A row may also be one of the study's bounds or published
+ones, or `@ STUDY/SET` alone where the columns name the trackers; its study goes before the column's.
 """
 import json
 import math
@@ -33,6 +36,8 @@ def figure(value, decimals=None):
     """As the program prints them: four digits, of which no more than three stand behind the point, or three below .2."""
     if value is None:
         return ""
+    if abs(value) >= 1e6:
+        return f"{value:.1e}".replace("e+0", "e").replace("e+", "e")
     if decimals is None:
         size = math.floor(math.log10(abs(value))) if value else 0
         decimals = min(6, 2 - size) if 0 < abs(value) < 0.2 else min(3, max(0, 3 - size))
@@ -48,31 +53,58 @@ def with_error(value, error, decimals=None):
 
 
 def metric(tracker, name):
+    """The metric's entry: over all steps, or that of NAME:TIME."""
+    name, _, time = name.partition(":")
     for entry in tracker["metrics"]:
-        if entry["name"] == name and "time_s" not in entry:
+        if entry["name"] == name and entry.get("time_s") == (float(time) if time else None):
             return entry
-    raise SystemExit(f"results.md: no metric \"{name}\"")
+    if not time and name in tracker:
+        return {"unit": "", "value": tracker[name]}
+    raise SystemExit(f"results.md: no metric \"{name}\"" + (f" at {time} s" if time else ""))
+
+
+def named(tracker, name):
+    """A quantity's RMSE or a metric."""
+    if name in tracker.get("rmse", {}):
+        return {"unit": "", "value": tracker["rmse"][name], "se": tracker["rmse_se"][name]}
+    return metric(tracker, name)
 
 
 def cell(results, row, what):
     kind, _, name = what.partition(" ")
-    if row not in results["trackers"]:
+    if row in results["bounds"] and row not in results["trackers"]:
+        tracker = results["bounds"][row]
+        known = {*tracker, *(entry["name"] for entry in tracker["metrics"])}
+        if kind not in ("metric", "value") or any(one.partition(":")[0] not in known for one in name.split()):
+            return ""
+    elif row in results["trackers"]:
+        tracker = results["trackers"][row]
+    else:
         printed = results.get("published", {}).get(row, {}).get(name or kind)
+        if kind == "root" and printed is not None:
+            return figure(10 ** (printed / 20))
         return "" if printed is None else f"{printed:g}"
-    tracker = results["trackers"][row]
     if kind == "rmse":
         return with_error(tracker["rmse"][name], tracker["rmse_se"][name])
     if kind in ("metric", "value"):
-        entries = [metric(tracker, one) for one in name.split()]
+        entries = [named(tracker, one) for one in name.split()]
         return " / ".join(with_error(entry["value"], entry.get("se") if kind == "metric" else None,
                                      2 if entry["unit"] == "dB" else None) for entry in entries)
+    if kind == "percent":
+        return " / ".join(figure(100 * named(tracker, one)["value"], 1) for one in name.split())
+    if kind == "root":
+        return figure(10 ** (metric(tracker, name)["value"] / 20))
+    if kind == "over":
+        reference, *names = name.split()
+        others = results["trackers"].get(reference) or results["bounds"][reference]
+        return " / ".join(figure(named(tracker, one)["value"] / named(others, one)["value"]) for one in names)
     if kind == "ratio":
         return " / ".join(figure(ratio) for ratio in tracker["ratio_to_plain"].values())
     if kind == "nees":
         return figure(tracker["nees"])
     if kind == "coverage":
         return figure(tracker["coverage95"])
-    raise SystemExit(f"results.md: \"{what}\" is no figure: rmse, metric, value, ratio, nees or coverage")
+    raise SystemExit(f"results.md: \"{what}\" is no figure: rmse, metric, value, percent, root, over, ratio, nees or coverage")
 
 
 class Studies:
@@ -100,14 +132,17 @@ def parts(text):
 
 
 def table(studies, study, columns, rows):
-    lines = ["| tracker | " + " | ".join(heading for heading, _ in columns) + " |", "|---" * (len(columns) + 1) + "|"]
+    first = "set" if all(row.startswith("@ ") for _, row in rows) else "tracker"
+    lines = [f"| {first} | " + " | ".join(heading for heading, _ in columns) + " |", "|---" * (len(columns) + 1) + "|"]
     for label, row in rows:
+        tracker, _, own = row.rpartition("@ ") if "@ " in row else (row, "", "")
         cells = []
         for _, what in columns:
-            name, _, place = what.partition(" @ ")
-            cells.append(cell(studies.results(place or study), row, name))
+            what, _, place = what.partition(" @ ")
+            name, _, other = what.partition(" of ")
+            cells.append(cell(studies.results(own or place or study), other or tracker.strip(), name))
         if not any(cells):
-            raise SystemExit(f"results.md: \"{row}\" is no tracker and no published row of {study}")
+            raise SystemExit(f"results.md: \"{row}\" is no tracker, no bound and no published row of {study}")
         lines.append(f"| {label} | " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
 

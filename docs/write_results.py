@@ -29,6 +29,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 DOCUMENT = ROOT / "docs" / "results.md"
+DECIMALS = {"dB": 2, "runs": 0}
 MARKER = re.compile(r"(<!-- table: (\S+)\ncolumns: (.+)\nrows: (.+)\n-->\n)((?:\|.*\n)+)(<!-- end of table -->)")
 
 
@@ -89,7 +90,7 @@ def cell(results, row, what):
     if kind in ("metric", "value"):
         entries = [named(tracker, one) for one in name.split()]
         return " / ".join(with_error(entry["value"], entry.get("se") if kind == "metric" else None,
-                                     2 if entry["unit"] == "dB" else None) for entry in entries)
+                                     DECIMALS.get(entry["unit"])) for entry in entries)
     if kind == "percent":
         return " / ".join(figure(100 * named(tracker, one)["value"], 1) for one in name.split())
     if kind == "root":

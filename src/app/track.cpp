@@ -476,7 +476,7 @@ void add_track(const Subcommands& all) {
       .argument("--foretell", options->foretold,
                 "hold what trackers foretell of measurements that are hidden from them, so many steps ahead, against "
                 "these: who is better without a truth")
-      .non_negative();
+      .within(0, 100000);
   command.runs([options] { track(*options); });
 }
 

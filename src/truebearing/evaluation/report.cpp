@@ -296,7 +296,8 @@ void add_figures(const Comparison& comparison, Json& json) {
 }  // namespace
 
 std::string comparison_table(const Comparison& comparison, const TableLayout& layout) {
-  std::string text = fmt::format("{}: {} runs, seed {}\n\n", comparison.study, comparison.runs, comparison.seed);
+  std::string text = fmt::format("{}: {} run{}, seed {}\n\n", comparison.study, comparison.runs,
+                                 comparison.runs == 1 ? "" : "s", comparison.seed);
   if (comparison.trackers.empty()) return text;
   for (const auto& [name, set] : comparison.sets) text += heading_line(name, layout) + tables(set, layout) + "\n";
   if (!comparison.sets.empty()) text += heading_line("all sets together", layout);

@@ -112,7 +112,9 @@ class LayoutReader {
     NameAndUnit name = apart(std::string_view(header).substr(is_truth ? kTruthPrefix.size() : 0));
     if (!name.unit) {
       if (name_without_unit(header, column)) return;
-      if (is_truth) fault(column.index, "names no known unit", "a name that ends in " + all_suffixes());
+      if (is_truth)
+        fault(column.index, "names no known unit",
+              fmt::format("a name that ends in {}; --columns {}=truth_east_m gives it one", all_suffixes(), header));
       return;
     }
     if (name.unit->dimension == Dimension::time) return;

@@ -210,7 +210,8 @@ void MeasurementLog::check_lateness(double time_s) {
   if (time_s < latest_time_s_ - options_.sort_window_s)
     throw csv_.error(
         time_.index(), fmt::format("is {}, earlier than {} in a row before", time_s, latest_time_s_),
-        fmt::format("times that do not decrease, or --sort-window {:.6g} or more", latest_time_s_ - time_s));
+        fmt::format("times that do not decrease, or --sort-window {0:.6g} or more, or --late {0:.6g} of `track`",
+                    latest_time_s_ - time_s));
   ++findings_.late;
 }
 

@@ -15,10 +15,10 @@ A marker names a study, what stands in each column and in each row:
     <!-- end of table -->
 
 FIGURE is `rmse QUANTITY` and `metric NAME` (each with its standard error), `value NAME NAME...` (metrics and quantities' RMSE
-without), `percent NAME...`, `root NAME` (of a square in dB),
-`over TRACKER NAME NAME...` (each over that of the tracker or bound), `ratio` (to plain, each
-quantity), `nees` or `coverage`. NAME:600 is the metric at 600 s. A row may also be one of the study's bounds or published
-ones, or `@ STUDY/SET` alone where the columns name the trackers; its study goes before the column's.
+without), `percent NAME...`, `root NAME` (of a square in dB), `over TRACKER NAME NAME...` (each over that of the tracker or
+bound), `gain FROM TO NAME NAME...` (share of the way between two trackers), `ratio` (to plain, each quantity), `nees` or
+`coverage`. NAME:600 is the metric at 600 s. A row may also be one of the study's bounds or published ones, or `@ STUDY/SET`
+alone where the columns name the trackers; its study goes before the column's.
 """
 import json
 import math
@@ -99,13 +99,18 @@ def cell(results, row, what):
         reference, *names = name.split()
         others = results["trackers"].get(reference) or results["bounds"][reference]
         return " / ".join(figure(named(tracker, one)["value"] / named(others, one)["value"]) for one in names)
+    if kind == "gain":
+        low, high, *names = name.split()
+        ends = [[named(results["trackers"][end], one)["value"] for end in (low, high)] for one in names]
+        return " / ".join(figure((worst - named(tracker, one)["value"]) / (worst - best))
+                          for one, (worst, best) in zip(names, ends))
     if kind == "ratio":
         return " / ".join(figure(ratio) for ratio in tracker["ratio_to_plain"].values())
     if kind == "nees":
         return figure(tracker["nees"])
     if kind == "coverage":
         return figure(tracker["coverage95"])
-    raise SystemExit(f"results.md: \"{what}\" is no figure: rmse, metric, value, percent, root, over, ratio, nees or coverage")
+    raise SystemExit(f"results.md: \"{what}\" is no figure: rmse, metric, value, percent, root, over, gain, ratio, nees or coverage")
 
 
 class Studies:

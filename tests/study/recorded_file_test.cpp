@@ -125,6 +125,37 @@ TEST_F(RecordedFileTest, AbsentFileIsNamedWhenItIsNeeded) {
   EXPECT_THAT(error_of(kPlaneStudy), AllOf(HasSubstr("two.csv"), HasSubstr("cannot be opened")));
 }
 
+TEST_F(RecordedFileTest, CorrectionsAreTaughtOnTheFlightThatTheStudyNames) {
+  const std::string taught = testing::kFlightStudy + R"(
+[trackers.smoothed]
+kind = "smoother"
+of = "plain"
+
+[trackers.nfnn]
+kind = "corrected"
+base = "plain"
+model = "nfnn.json"
+features = [{ kind = "innovation_average", component = "east_m", alpha = 0.5 }]
+
+[trackers.nfnn.training]
+teacher = "smoothed"
+runs = 2
+rules = 2
+scenario = "one.csv"
+)";
+  folder_.write("one.csv", flight(25, 45));
+  const Study study = load(taught);
+  const auto scenario = study.scenario(study.tracker("nfnn").correction->training.scenario.value());
+  const Recording drawn = scenario->simulate({1, Role::training, 0});
+  ASSERT_EQ(drawn.measurements.size(), 25u);
+  EXPECT_NE(drawn.measurements[3].z, scenario->simulate({1, Role::training, 1}).measurements[3].z);
+  EXPECT_NE(drawn.measurements[3].z, scenario->simulate({1, Role::evaluation, 0}).measurements[3].z);
+  const auto refusal = [&](const std::string& named) {
+    return error_message([&] { load(replaced(taught, "\"one.csv\"", named)); });
+  };
+  EXPECT_EQ(refusal("\"absent.csv\""), "no error") << "it can be compared without";
+}
+
 TEST_F(RecordedFileTest, WhatTheStudyMustSayOfPositions) {
   folder_.write("one.csv", flight(25, 45));
   folder_.write("folder/two.csv", flight(30, -45));

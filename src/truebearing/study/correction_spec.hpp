@@ -17,10 +17,12 @@
 namespace truebearing {
 
 /// A scenario made of another: that of a file, or the study's own where `file` is empty, but for the keys in `changes`;
-/// tables are merged key by key.
+/// tables are merged key by key. Or a recorded track (CSV) as it is (RecordedFile).
 struct ChangedScenario {
   std::filesystem::path file;
   SharedTable changes;
+
+  bool is_recorded() const { return file.extension() == ".csv"; }
 };
 
 /// Reads the value of `key`: the name of a file, or a table of changes whose key `scenario`, where it has one, names it.

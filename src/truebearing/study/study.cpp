@@ -59,11 +59,8 @@ void Study::read(const StudyFile& file) {
   if (auto sets = reader.table_if_present("sets"))
     for (const std::string& set : sets->keys()) {
       const ChangedScenario changed = read_changed_scenario(*sets, set);
-      if (changed.file.extension() == ".csv") {
-        sets_.emplace_back(set, recorded_scenario(changed.file));
-        continue;
-      }
       sets_.emplace_back(set, this->scenario(changed));
+      if (changed.is_recorded()) continue;  // read when it is needed
       if (sets_.back().second->truth_space() != scenario_->truth_space())
         throw sets->error(set, "has another truth than the study's scenario");
     }
@@ -122,6 +119,7 @@ std::vector<NamedScenario> Study::evaluation_scenarios() const {
 }
 
 std::unique_ptr<Scenario> Study::scenario(const ChangedScenario& changed) const {
+  if (changed.is_recorded()) return recorded_scenario(changed.file);
   const SharedTable original = changed.file.empty() ? scenario_table_ : read_toml_file(changed.file);
   const auto table = std::make_shared<const toml::table>(merged(*original, *changed.changes));
   return read_scenario(TableReader(table, changed.file.empty() ? scenario_file_ : changed.file.string()),

@@ -358,6 +358,11 @@ TEST(RecordingCsv, WantedColumnsComeInTheirOrder) {
   EXPECT_EQ(log.measurements[0].z(0), 5.0);
 }
 
+TEST(RecordingCsv, WhatIsMeantKeepsTheUnitOfTheFile) {
+  EXPECT_THAT(error_of("time_s,rng_km,bearing_deg\n0,5,90\n"), HasSubstr("rng_km=range_km"));
+  EXPECT_THAT(error_of("time_s,range_km,brg_rad\n0,5,1\n"), HasSubstr("brg_rad=bearing_rad"));
+}
+
 TEST(RecordingCsv, MisspeltColumnIsNotLostSilently) {
   for (const auto& [misspelt, meant] :
        std::vector<std::pair<std::string, std::string>>{{"bearing_dg", "bearing_deg"},

@@ -54,6 +54,17 @@ std::string_view to_string(ColumnRole role) {
   return "left out";
 }
 
+namespace {
+
+// A known name in the unit that the file has: "range_km" of "rng_km", where "range_m" is known.
+std::string in_unit_of(const NameAndUnit& name, std::string known) {
+  const NameAndUnit meant = apart(known);
+  if (!name.unit || !meant.unit || name.unit->dimension != meant.unit->dimension) return known;
+  return fmt::format("{}_{}", meant.stem, name.unit->suffix);
+}
+
+}  // namespace
+
 std::string meant_name(const CsvReader& csv, std::size_t index, const std::vector<std::string>& known) {
   const std::string& header = csv.header()[index];
   const NameAndUnit name = apart(header);
@@ -62,8 +73,8 @@ std::string meant_name(const CsvReader& csv, std::size_t index, const std::vecto
     if (stem == other.word) stem = other.stem;
   if (!name.unit || stem != name.stem)
     for (const std::string& candidate : known)
-      if (apart(candidate).stem == stem) return candidate;
-  return near_miss(header, known);
+      if (apart(candidate).stem == stem) return in_unit_of(name, candidate);
+  return in_unit_of(name, near_miss(header, known));
 }
 
 CsvReader with_names(CsvReader csv, const RecordingOptions& options) {

@@ -54,6 +54,9 @@ KeySurvey::Tables surveyed_tables() {
   kinds.insert(kinds.end(), {"corrected", kSmoother});
   kind.choices.insert(kinds.begin(), kinds.end());
   kind.valid.insert(fmt::format("\"{}\"", fmt::join(kind.choices, "\", \"")));
+  if (const std::vector<std::string> unvisited = unvisited_choices(tables); !unvisited.empty())
+    throw InputError((data_folder() / "data/keys").string(), fmt::format("visits no {}", fmt::join(unvisited, ", ")),
+                     "a study for each");
   return tables;
 }
 

@@ -26,7 +26,8 @@ std::string document() {
   return text.str();
 }
 
-// The command refuses where a key that is read lacks a meaning, and where a meaning is of no key that is read.
+// The command refuses where a key that is read lacks a meaning, where a meaning is of no key that is read, and where no
+// study visits a kind or model.
 TEST(Keys, DocumentIsWhatTheCommandWrites) {
   const TemporaryFolder folder;
   const Outcome written = run(folder, "keys --markdown");
@@ -42,6 +43,15 @@ TEST(Keys, OneTableIsPrintedInAHundredColumns) {
                                  HasSubstr("a number in [-90, 90]; default: required"), Not(HasSubstr("[scoring]"))));
   std::istringstream lines(printed.out);
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100U) << line;
+}
+
+TEST(Keys, KindOfTrackerPrintsWhatItTakes) {
+  const TemporaryFolder folder;
+  const Outcome printed = run(folder, "keys imm");
+  ASSERT_EQ(printed.status, 0) << printed.err;
+  EXPECT_THAT(printed.out,
+              AllOf(HasSubstr("[tracker]"), HasSubstr("\n  modes: "), HasSubstr("\n  transition: "),
+                    HasSubstr("; of imm\n"), Not(HasSubstr("\n  particles: ")), Not(HasSubstr("\n  base: "))));
 }
 
 TEST(Keys, MistypedTableIsGivenTheNearest) {

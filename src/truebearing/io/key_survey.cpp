@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <sstream>
 #include <string_view>
 #include <toml++/toml.h>
@@ -57,6 +58,14 @@ std::string kind_of(const TableReader& reader) {
   return {};
 }
 
+// What the kind of a table is the kind of.
+std::string family_of(const std::string& table) {
+  const std::string last = table.substr(table.rfind('.') + 1);
+  if (last == "modes" || last == "around" || last == "truth") return "motion";
+  if (last == "batch" || last == "filter") return "tracker";
+  return last == "sensors" ? "measurement" : last;
+}
+
 }  // namespace
 
 KeySurvey::KeySurvey() : before_(current) {
@@ -79,6 +88,20 @@ SurveyedKey* surveyed(const TableReader& reader, const std::string& key) {
 
 void note_kind(const TableReader& reader, const std::string& kind) {
   if (current) current->kinds_[reader.path()] = kind;
+}
+
+std::vector<std::string> unvisited_choices(const KeySurvey::Tables& tables) {
+  std::set<std::string> choices, visited;
+  for (const auto& [table, keys] : tables)
+    for (const auto& [key, entry] : keys) {
+      if (key != "kind" && key != "model") continue;
+      const std::string family = family_of(table) + ".";
+      for (const std::string& choice : entry.choices) choices.insert(family + choice);
+      for (const std::string& kind : entry.kinds) visited.insert(family + kind);
+    }
+  std::vector<std::string> unvisited;
+  std::set_difference(choices.begin(), choices.end(), visited.begin(), visited.end(), std::back_inserter(unvisited));
+  return unvisited;
 }
 
 }  // namespace truebearing

@@ -47,6 +47,10 @@ SurveyedKey* surveyed(const TableReader& reader, const std::string& key);
 /// Of which kind a table is that is read without its `kind`, as a tracker's.
 void note_kind(const TableReader& reader, const std::string& kind);
 
+/// Choices of `kind` and `model` that no table was of, as "measurement.bearing": their keys were not seen. A motion is
+/// one wherever it stands, and so are a tracker and a measurement.
+std::vector<std::string> unvisited_choices(const KeySurvey::Tables& tables);
+
 /// What messages say of a range: "a number in [0, 1]".
 std::string describe(Range range);
 

@@ -46,7 +46,8 @@ Study Study::load(const std::filesystem::path& path) {
 
 void Study::read(const StudyFile& file) {
   TableReader reader(file.table, path_.string());
-  for (const char* elsewhere : {"like", "trackers", "sensors"}) reader.node(elsewhere);
+  for (const char* elsewhere : {"like", "trackers"}) reader.node(elsewhere);
+  static_cast<void>(reader.table_if_present("sensors"));  // which trackers read
   name_ = reader.text("name");
   const toml::node* scenario = reader.node("scenario");
   const bool is_inside = scenario && scenario->is_table();

@@ -11,6 +11,7 @@
 #include "truebearing/core/constants.hpp"
 #include "truebearing/core/error.hpp"
 #include "truebearing/evaluation/metric.hpp"
+#include "truebearing/evaluation/place_of.hpp"
 #include "truebearing/evaluation/text_table.hpp"
 
 namespace truebearing {
@@ -20,11 +21,6 @@ namespace {
 // Student's t for the mean of so many.
 constexpr std::size_t kStretches = 12;
 constexpr double kStudent = 2.2;
-
-int place_in(const std::vector<std::string>& names, const std::string& name) {
-  const auto found = std::find(names.begin(), names.end(), name);
-  return found == names.end() ? -1 : static_cast<int>(found - names.begin());
-}
 
 // Of one hidden measurement, by tracker: what it missed, NaN where it had no estimate, and how far a correction's gate was
 // open, NaN of what is none.
@@ -96,8 +92,8 @@ std::optional<double> miss(const std::vector<std::string>& components, const Mea
     return std::sqrt(squared);
   }
   const int east = record.space->component_index("east_m"), north = record.space->component_index("north_m");
-  const int range = place_in(components, "range_m"), bearing = place_in(components, "bearing_deg"),
-            elevation = place_in(components, "elevation_deg");
+  const int range = place_of(components, "range_m"), bearing = place_of(components, "bearing_deg"),
+            elevation = place_of(components, "elevation_deg");
   if (east < 0 || north < 0 || (range < 0 && bearing < 0) || z.size() < static_cast<Eigen::Index>(components.size()))
     return std::nullopt;
   const int up = record.space->component_index("up_m");

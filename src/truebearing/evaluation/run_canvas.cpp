@@ -9,16 +9,9 @@
 #include "truebearing/array/sample_covariance.hpp"
 #include "truebearing/core/angle.hpp"
 #include "truebearing/core/constants.hpp"
+#include "truebearing/evaluation/place_of.hpp"
 
 namespace truebearing {
-namespace {
-
-int place_of(const std::vector<std::string>& names, const std::string& name) {
-  const auto found = std::find(names.begin(), names.end(), name);
-  return found == names.end() ? -1 : static_cast<int>(found - names.begin());
-}
-
-}  // namespace
 
 RunCanvas::RunCanvas(const StateSpace& space)
     : space_(space), plane_(begins_in_plane(space) || space == space_space()) {

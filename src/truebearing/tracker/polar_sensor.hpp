@@ -44,6 +44,17 @@ struct PolarSensor {
   }
 };
 
+/// R (2 x 2) of a measured range and bearing that is converted to a position: that of the expected place where it is known
+/// better across the sight than the measurement tells it, else that of the measured one, which measured_R_m2() gives.
+template <typename MeasuredR>
+Eigen::Matrix2d converted_R_m2(const RangeBearing<>& seen, const Prediction& expected, const MeasuredR& measured_R_m2) {
+  const Eigen::Vector2d offset_m = expected.x.head<2>() - seen.site_m;
+  const Eigen::Matrix2d R = converted_covariance(offset_m, seen.sigma_range_m, seen.sigma_bearing_rad);
+  const Eigen::Vector2d across(offset_m.y(), -offset_m.x());
+  const bool is_known = across.dot(expected.P.topLeftCorner<2, 2>() * across) < across.dot(R * across);
+  return is_known ? R : Eigen::Matrix2d(measured_R_m2());
+}
+
 /// Range and bearing converted (unbiased) to a position.
 struct ConvertedSensor {
   using Model = CartesianPosition<2>;
@@ -53,16 +64,9 @@ struct ConvertedSensor {
   /// Where given, R is this squared in both axes, wherever the target is: of filters that are told x and y and no more.
   std::optional<double> position_sigma_m = std::nullopt;
 
-  /// R is that of the expected place where it is known better across the sight than the measurement tells it, else that
-  /// of the measured one.
   Model model(const Measurement& measurement, const Prediction& expected) const {
     if (position_sigma_m) return {one_R_m2()};
-    const RangeBearing<> seen = polar.model(measurement);
-    const Eigen::Vector2d offset_m = expected.x.head<2>() - seen.site_m;
-    const Eigen::Matrix2d R = converted_covariance(offset_m, seen.sigma_range_m, seen.sigma_bearing_rad);
-    const Eigen::Vector2d across(offset_m.y(), -offset_m.x());
-    const bool is_known = across.dot(expected.P.topLeftCorner<2, 2>() * across) < across.dot(R * across);
-    return {is_known ? R : polar.converted(measurement).R_m2};
+    return {converted_R_m2(polar.model(measurement), expected, [&] { return polar.converted(measurement).R_m2; })};
   }
   bool has_value(const Measurement& measurement) const { return polar.has_value(measurement); }
   Eigen::Vector2d value(const Measurement& measurement) const { return polar.converted(measurement).position_m; }

@@ -3,12 +3,13 @@
 // range, bearing and range rate, converted. Where the measurement says that the sensor was, else at site_m and at rest.
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <cmath>
 
 #include "truebearing/measurement/position_and_rate.hpp"
 #include "truebearing/measurement/range_rate.hpp"
+#include "truebearing/tracker/polar_sensor.hpp"
 #include "truebearing/tracker/range_bearing_rate_sensor.hpp"
 #include "truebearing/tracker/step_record.hpp"
 
@@ -48,8 +49,10 @@ struct ConvertedRateSensor {
 
   Model model(const Measurement& measurement, const Prediction& expected) const {
     const RangeBearingRate<> seen = polar.model(measurement);
-    const Eigen::Matrix2d R = converted_R(seen, measurement, expected);
-    const Eigen::Vector4d x = after_position(polar.fix(measurement).z, R, expected);
+    const PositionFix fix = polar.fix(measurement);
+    const RangeBearing<> place{seen.site_m, seen.sigma_range_m, seen.sigma_bearing_rad};
+    const Eigen::Matrix2d R = converted_R_m2(place, expected, [&] { return fix.R; });
+    const Eigen::Vector4d x = after_position(fix.z, R, expected);
     const Eigen::Vector3d z = seen.h(x);
     const Eigen::Matrix<double, 3, 4> H = seen.H(x);
     const double c = range_share(seen), rho = seen.correlation;
@@ -70,25 +73,14 @@ struct ConvertedRateSensor {
     return seen.correlation * seen.sigma_rate_mps / seen.sigma_range_m;
   }
 
-  // As ConvertedSensor has it (polar_sensor.hpp).
-  Eigen::Matrix2d converted_R(const RangeBearingRate<>& seen, const Measurement& measurement,
-                              const Prediction& expected) const {
-    const Eigen::Vector2d offset_m = expected.x.head<2>() - seen.site_m;
-    const Eigen::Matrix2d R = converted_covariance(offset_m, seen.sigma_range_m, seen.sigma_bearing_rad);
-    const Eigen::Vector2d across(offset_m.y(), -offset_m.x());
-    const bool is_known = across.dot(expected.P.topLeftCorner<2, 2>() * across) < across.dot(R * across);
-    return is_known ? R : Eigen::Matrix2d(polar.fix(measurement).R);
-  }
-
-  // The position's update of what is expected; where S has no inverse, what is expected.
+  // The position's update of what is expected; where S is no covariance, what is expected.
   static Eigen::Vector4d after_position(const Eigen::Vector2d& z, const Eigen::Matrix2d& R,
                                         const Prediction& expected) {
     const Eigen::Vector4d x = expected.x.head<4>();
     const Eigen::Matrix<double, 4, 2> PH = expected.P.topLeftCorner<4, 2>();
     const Eigen::Matrix2d S = PH.topRows<2>() + R;
-    const double determinant = S.determinant();
-    if (!(determinant > 0.0)) return x;
-    return x + PH * (S.inverse() * (z - x.head<2>()));
+    const Eigen::LLT<Eigen::Matrix2d> root(S);
+    return root.info() == Eigen::Success ? Eigen::Vector4d(x + PH * root.solve(z - x.head<2>())) : x;
   }
 };
 

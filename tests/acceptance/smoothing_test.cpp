@@ -20,7 +20,7 @@ Comparison run(const std::string& name, std::size_t runs) {
 TEST(Smoothing, OfAMultipleModelIsAQuarterBetterThanTheFilter) {
   const Comparison comparison = run("manoeuvre_2d_smoothed", 30);
   const PairedDifference found = testing::difference(comparison, "imm6_smoothed", "imm6", "position_m");
-  EXPECT_LT(found.mean - 2.0 * found.se, -0.25 * comparison.tracker("imm6")->quantity("position_m")->rmse);
+  EXPECT_LT(found.mean + 2.0 * found.se, -0.25 * comparison.tracker("imm6")->quantity("position_m")->rmse);
   for (const char* quantity : {"position_m", "velocity_mps"}) {
     testing::expect_better(comparison, "tuned_smoothed", "tuned", quantity);
     testing::expect_better(comparison, "imm6_lag_10", "imm6", quantity);
@@ -30,7 +30,7 @@ TEST(Smoothing, OfAMultipleModelIsAQuarterBetterThanTheFilter) {
 TEST(Smoothing, OfTheSingerFilterIsThePublishedOne) {
   const Comparison comparison = run("benchmark_zhenbiny_smoothed", 100);
   const QuantitySummary& position = *comparison.tracker("singer_smoothed")->quantity("position_m");
-  EXPECT_LT(position.rmse, 53.1 + 2.0 * position.rmse_se);
+  EXPECT_LT(position.rmse, 53.0 + 2.0 * position.rmse_se);
 }
 
 TEST(Smoothing, TeachesAtLeastHalfOfWhatTheTruthDoes) {

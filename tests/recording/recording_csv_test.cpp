@@ -85,6 +85,31 @@ TEST(RecordingCsv, OwnShipMayBePositionOrPositionAndVelocity) {
   EXPECT_THAT(error_of(header + ",sensor_north_mps\n0,90,5,6,1\n"), HasSubstr("own-ship"));
 }
 
+TEST(RecordingCsv, OwnShipHasAHeightWhereTheLogTellsIt) {
+  const std::string header = "time_s,bearing_deg,elevation_deg,sensor_east_m,sensor_north_m";
+  EXPECT_TRUE(std::isnan(read(header + "\n0,90,10,5,6\n").measurements[0].sensor->up_m)) << "that of the site, then";
+  const Recording high = read(header + ",sensor_up_km\n0,90,10,5,6,2\n1,90,10,5,6,\n");
+  EXPECT_EQ(high.measurements[0].sensor->up_m, 2000.0);
+  EXPECT_EQ(high.measurements[0].sensor->climb_mps, 0.0);
+  EXPECT_FALSE(high.measurements[1].sensor) << "from an unknown height";
+  EXPECT_TRUE(high.measurements[1].is_missing());
+  EXPECT_EQ(high.counts.missing, 1);
+  const std::string flat = "time_s,bearing_deg,sensor_east_m,sensor_north_m,sensor_up_m";
+  EXPECT_FALSE(read(flat + "\n0,90,5,6,\n").measurements[0].is_missing()) << "a bearing does not look up";
+
+  const std::string text = header +
+                           ",sensor_east_mps,sensor_north_mps,sensor_up_m,sensor_up_mps\n0,90,10,5,6,1,2,0,-3\n"
+                           "1,,,5,6,1,2,100,-3\n";
+  const Recording climbing = read(text);
+  EXPECT_EQ(climbing.measurements[0].sensor->climb_mps, -3.0);
+  EXPECT_EQ(write_recording(climbing), text);
+
+  EXPECT_THAT(error_of("time_s,bearing_deg,sensor_up_m\n0,90,5\n"),
+              AllOf(HasSubstr("sensor_up_m: stands alone"), HasSubstr("sensor_east_m, sensor_north_m with it")));
+  EXPECT_THAT(error_of(flat + ",sensor_up_fps\n0,90,5,6,7,8\n"),
+              AllOf(HasSubstr("sensor_up_fps: stands alone"), HasSubstr("sensor_east_mps, sensor_north_mps with it")));
+}
+
 TEST(RecordingCsv, AGuessStandsInTheRowsThatHaveOne) {
   const std::string text =
       "time_s,bearing_deg,guess_range_m,guess_range_sigma_m,guess_speed_mps,guess_speed_sigma_mps\n"

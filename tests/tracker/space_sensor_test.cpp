@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/statistics.hpp"
+#include "truebearing/core/constants.hpp"
 #include "truebearing/core/covariance.hpp"
 #include "truebearing/core/random.hpp"
 #include "truebearing/filter/kalman.hpp"
@@ -43,6 +44,19 @@ TEST(SpaceSensor, SeesFromWhereItIs) {
     const RangeBearingElevationRateSensor direct{exact, 0.6};
     EXPECT_LT((direct.value(measurement) - direct.model(measurement).h(kTruth)).norm(), kAlgebra);
   }
+}
+
+// A platform whose place is told in the plane only is as high as the site.
+TEST(SpaceSensor, HeightThatIsNotToldIsThatOfTheSite) {
+  SpaceSite<3> site{Eigen::Vector3d::Ones()};
+  site.site_m = {1.0, 2.0, 300.0};
+  Measurement measurement{.time_s = 0.0, .z = Eigen::Vector3d(5000.0, 0.1, 0.2), .sigma = {}, .sensor = {}};
+  EXPECT_EQ(site.place(measurement), site.site_m);
+  measurement.sensor = SensorState{{500.0, 400.0}, {10.0, -20.0}, kNaN};
+  EXPECT_EQ(site.place(measurement), Eigen::Vector3d(500.0, 400.0, 300.0));
+  EXPECT_EQ(site.velocity(measurement), Eigen::Vector3d(10.0, -20.0, 0.0));
+  measurement.sensor->up_m = 0.0;
+  EXPECT_EQ(site.place(measurement), Eigen::Vector3d(500.0, 400.0, 0.0));
 }
 
 TEST(SpaceSensor, TakesReportedDeviationsAndItsFactor) {

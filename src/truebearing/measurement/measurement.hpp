@@ -17,7 +17,7 @@ struct StepRecord;
 struct SensorState {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< East, North
   Eigen::Vector2d velocity_mps = Eigen::Vector2d::Zero();
-  double up_m = 0.0;  ///< of targets in three dimensions
+  double up_m = 0.0;  ///< of targets in three dimensions; NaN where it is not told
   double climb_mps = 0.0;
 };
 

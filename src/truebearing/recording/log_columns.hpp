@@ -35,10 +35,11 @@ struct LogColumn {
 struct LogLayout {
   std::vector<LogColumn> columns;  ///< all of the file
   std::vector<LogColumn> z;
-  std::vector<LogColumn> sigma;                 ///< as long as z, or empty
-  std::vector<LogColumn> sensor;                ///< none, position, or position and velocity
-  std::vector<LogColumn> guess;                 ///< none, range, or range and speed, with their sigmas
-  std::vector<std::optional<LogColumn>> truth;  ///< by component of the truth space
+  std::vector<LogColumn> sigma;                      ///< as long as z, or empty
+  std::vector<LogColumn> sensor;                     ///< none, position, or position and velocity
+  std::optional<LogColumn> sensor_up, sensor_climb;  ///< own ship's height, and with it its vertical speed
+  std::vector<LogColumn> guess;                      ///< none, range, or range and speed, with their sigmas
+  std::vector<std::optional<LogColumn>> truth;       ///< by component of the truth space
   const StateSpace* truth_space = nullptr;
   std::optional<std::size_t> target;  ///< the column that tells targets apart
   std::optional<std::size_t> source;  ///< the column that names which of several sensors a row is of

@@ -31,8 +31,10 @@ constexpr std::array kKnown{
     KnownColumn{"frequency", Dimension::frequency, ColumnRole::measured, "frequency_hz"},
     KnownColumn{"sensor_east", Dimension::length, ColumnRole::sensor, "sensor_east_m"},
     KnownColumn{"sensor_north", Dimension::length, ColumnRole::sensor, "sensor_north_m"},
+    KnownColumn{"sensor_up", Dimension::length, ColumnRole::sensor, "sensor_up_m"},
     KnownColumn{"sensor_east", Dimension::speed, ColumnRole::sensor, "sensor_east_mps"},
     KnownColumn{"sensor_north", Dimension::speed, ColumnRole::sensor, "sensor_north_mps"},
+    KnownColumn{"sensor_up", Dimension::speed, ColumnRole::sensor, "sensor_up_mps"},
     KnownColumn{"guess_range", Dimension::length, ColumnRole::guess, "guess_range_m"},
     KnownColumn{"guess_range_sigma", Dimension::length, ColumnRole::guess, "guess_range_sigma_m"},
     KnownColumn{"guess_speed", Dimension::speed, ColumnRole::guess, "guess_speed_mps"},
@@ -85,6 +87,7 @@ class LayoutReader {
     match_sigmas();
     layout_.sensor = belonging_together(ColumnRole::sensor, "own-ship",
                                         {"sensor_east_m", "sensor_north_m", "sensor_east_mps", "sensor_north_mps"});
+    find_sensor_height();
     layout_.guess =
         belonging_together(ColumnRole::guess, "guess",
                            {"guess_range_m", "guess_range_sigma_m", "guess_speed_mps", "guess_speed_sigma_mps"});
@@ -241,6 +244,18 @@ class LayoutReader {
           csv_.name(), fmt::format("has {} columns that do not belong together", what),
           fmt::format("{}, {}, and {}, {} with them", quantities[0], quantities[1], quantities[2], quantities[3]));
     return columns;
+  }
+
+  // Own ship's, and how fast it climbs: of a platform whose place, and velocity, in the plane are told.
+  void find_sensor_height() {
+    const auto find = [&](const char* quantity, bool belongs, const char* with) {
+      const LogColumn* column = column_of(ColumnRole::sensor, quantity);
+      if (column && !belongs) fault(column->index, "stands alone", with);
+      return column ? std::optional(*column) : std::nullopt;
+    };
+    layout_.sensor_up = find("sensor_up_m", layout_.sensor.size() >= 2, "sensor_east_m, sensor_north_m with it");
+    layout_.sensor_climb = find("sensor_up_mps", layout_.sensor_up && layout_.sensor.size() == 4,
+                                "sensor_up_m, sensor_east_mps, sensor_north_mps with it");
   }
 
   void find_truth() {

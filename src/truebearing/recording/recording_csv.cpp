@@ -233,7 +233,13 @@ Measurement MeasurementLog::read_measurement(const std::vector<double>& cells, d
   SensorState sensor;
   sensor.position_m << number(layout_.sensor[0]), number(layout_.sensor[1]);
   if (layout_.sensor.size() == 4) sensor.velocity_mps << number(layout_.sensor[2]), number(layout_.sensor[3]);
-  if (sensor.position_m.allFinite() && sensor.velocity_mps.allFinite())
+  // A height that the log does not tell is the site's (SpaceSite); one that this row does not is missed by who looks up.
+  sensor.up_m = layout_.sensor_up ? number(*layout_.sensor_up) : kNaN;
+  if (layout_.sensor_climb) sensor.climb_mps = number(*layout_.sensor_climb);
+  const std::vector<std::string>& components = components_of(columns_and_counts_, measurement);
+  const bool looks_up = std::find(components.begin(), components.end(), "elevation_deg") != components.end();
+  const bool has_height = !layout_.sensor_up || (std::isfinite(sensor.up_m) && std::isfinite(sensor.climb_mps));
+  if (sensor.position_m.allFinite() && sensor.velocity_mps.allFinite() && (has_height || !looks_up))
     measurement.sensor = sensor;
   else
     measurement.z.setConstant(kNaN);  // a measurement from an unknown place says nothing either

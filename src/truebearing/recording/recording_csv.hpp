@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The measurement log: CSV with a time (time_column.hpp), measured columns with their units in the name (`position_m`,
 // `range_km`, `bearing_deg`; log_units.hpp), and optionally their standard deviations (`position_sigma_m`), own-ship
-// columns (`sensor_east_m`, `sensor_north_m`, and `sensor_east_mps`, `sensor_north_mps`), a guess of what is tracked
+// columns (`sensor_east_m`, `sensor_north_m`, and `sensor_east_mps`, `sensor_north_mps`; `sensor_up_m`, and
+// `sensor_up_mps`, without which SensorState::up_m is NaN), a guess of what is tracked
 // (`guess_range_m`, `guess_range_sigma_m`, and `guess_speed_mps`, `guess_speed_sigma_mps`), the truth
 // (`truth_<component>`), and a column that tells targets apart (`vessel`, `track`, `mmsi`, ...). Of several sensors that a
 // study knows each row is one's: a column `sensor` names it, or the cells that are filled tell. Other columns are left out

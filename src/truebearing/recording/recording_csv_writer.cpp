@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::array<const char*, 4> kSensorColumns{"sensor_east_m", "sensor_north_m", "sensor_east_mps",
                                                     "sensor_north_mps"};
+constexpr std::array<const char*, 2> kHeightColumns{"sensor_up_m", "sensor_up_mps"};
 constexpr std::array<const char*, 4> kGuessColumns{"guess_range_m", "guess_range_sigma_m", "guess_speed_mps",
                                                    "guess_speed_sigma_mps"};
 
@@ -57,6 +58,12 @@ std::string write_recording(const Recording& recording) {
   };
   const bool has_sigma = any([](const Measurement& m) { return m.sigma.size() > 0; });
   const bool has_sensor = any([](const Measurement& m) { return m.sensor.has_value(); });
+  // Of targets in the plane a height of 0 says nothing.
+  const bool looks_up =
+      std::find(recording.measured.begin(), recording.measured.end(), "elevation_deg") != recording.measured.end();
+  const bool has_height = any([&](const Measurement& m) {
+    return m.sensor && std::isfinite(m.sensor->up_m) && (looks_up || m.sensor->up_m != 0.0);
+  });
   const bool has_guess = any([](const Measurement& m) { return m.guess.has_value(); });
   const bool has_speed = any([](const Measurement& m) { return m.guess && std::isfinite(m.guess->speed_mps); });
   const auto guess_end = has_speed ? kGuessColumns.end() : kGuessColumns.begin() + 2;
@@ -70,6 +77,7 @@ std::string write_recording(const Recording& recording) {
   if (has_sigma)
     for (const std::string& name : recording.measured) header.push_back(sigma_name(name));
   if (has_sensor) header.insert(header.end(), kSensorColumns.begin(), kSensorColumns.end());
+  if (has_height) header.insert(header.end(), kHeightColumns.begin(), kHeightColumns.end());
   if (has_guess) header.insert(header.end(), kGuessColumns.begin(), guess_end);
   if (has_truth)
     for (const std::string& component : recording.truth_space->components) header.push_back("truth_" + component);
@@ -83,9 +91,11 @@ std::string write_recording(const Recording& recording) {
     if (has_sigma) write_vector(csv, among_all(recording, measurement, measurement.sigma), z_factors);
     if (has_sensor) {
       const Eigen::Vector2d unknown = Eigen::Vector2d::Constant(kNaN);
-      const SensorState sensor = measurement.sensor.value_or(SensorState{unknown, unknown});
+      const SensorState sensor = measurement.sensor.value_or(SensorState{unknown, unknown, kNaN, kNaN});
       for (const double value : sensor.position_m) csv.number(value);
       for (const double value : sensor.velocity_mps) csv.number(value);
+      if (has_height) csv.number(sensor.up_m);
+      if (has_height) csv.number(sensor.climb_mps);
     }
     if (has_guess) {
       const TargetGuess guess = measurement.guess.value_or(TargetGuess{kNaN, kNaN});

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sensors of targets in space [east, north, up, v_east, v_north, v_up] (any_sensor.hpp): range, bearing and elevation,
 // with a range rate or without, as they are or converted, and bearing and elevation alone. Where the measurement says
-// that its sensor was, else at site_m and at rest. The measurement's own standard deviations hold where it carries them,
+// that its sensor was, at the height of site_m where it tells none (NaN); else at site_m and at rest. The measurement's own standard deviations hold where it carries them,
 // else the sensor's; either is multiplied by sigma_factor.
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <optional>
 
 #include "truebearing/measurement/bearing_elevation.hpp"
@@ -33,7 +34,8 @@ struct SpaceSite {
   }
   Eigen::Vector3d place(const Measurement& measurement) const {
     if (!measurement.sensor) return site_m;
-    return {measurement.sensor->position_m.x(), measurement.sensor->position_m.y(), measurement.sensor->up_m};
+    const SensorState& sensor = *measurement.sensor;
+    return {sensor.position_m.x(), sensor.position_m.y(), std::isnan(sensor.up_m) ? site_m.z() : sensor.up_m};
   }
   Eigen::Vector3d velocity(const Measurement& measurement) const {
     if (!measurement.sensor) return Eigen::Vector3d::Zero();

@@ -11,6 +11,7 @@
 #include "truebearing/recording/snapshot_log.hpp"
 #include "truebearing/report/verdict.hpp"
 #include "truebearing/study/measured_check.hpp"
+#include "truebearing/study/study_sites.hpp"
 
 namespace truebearing {
 namespace {
@@ -54,7 +55,8 @@ void compare_study(const Study& study, const CorrectionModels& models, const Com
                                         time_per_step_ns(*study.make_tracker(trackers.name(i), models), timed));
 
   std::vector<RunPicture> pictures;
-  if (options.report.wanted()) pictures = picture_runs(trackers, scenarios, comparison_options, comparison);
+  if (options.report.wanted())
+    pictures = picture_runs(trackers, scenarios, comparison_options, comparison, sensor_sites(study));
   const std::string json = comparison_json(comparison, pictures);
   const bool prints = !is_standard_output(options.json) && !is_standard_output(options.report.page);
   if (prints) fmt::print("{}{}", notes, with_best_coloured(comparison_table(comparison, options.tables.layout())));

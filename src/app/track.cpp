@@ -35,6 +35,7 @@
 #include "truebearing/study/log_fit.hpp"
 #include "truebearing/study/measured_check.hpp"
 #include "truebearing/study/study.hpp"
+#include "truebearing/study/study_sites.hpp"
 #include "truebearing/tracker/step_log.hpp"
 #include "truebearing/tracker/step_log_scenario.hpp"
 
@@ -114,7 +115,7 @@ Scored score(const Study& study, const TrackArguments& options, const TrackerSet
   const std::vector<NamedScenario> scenarios{{options.log, &scenario}};
   Scored scored{compare(trackers, scenarios, comparison_options), {}};
   if (options.report.wanted())
-    scored.pictures = picture_runs(trackers, scenarios, comparison_options, scored.comparison);
+    scored.pictures = picture_runs(trackers, scenarios, comparison_options, scored.comparison, sensor_sites(study));
   scored.comparison.study = study.name() + " on " + options.log;
   for (double& time_s : scored.comparison.time_s) time_s += epoch_s;
   return scored;

@@ -11,11 +11,13 @@
 
 #include "tests/support/error_message.hpp"
 #include "truebearing/core/angle.hpp"
+#include "truebearing/core/constants.hpp"
 #include "truebearing/core/random.hpp"
 #include "truebearing/filter/erased_motion.hpp"
 #include "truebearing/filter/filter_kinds.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
 #include "truebearing/tracker/filter_tracker.hpp"
+#include "truebearing/tracker/polar_sensor.hpp"
 #include "truebearing/tracker/position_sensor.hpp"
 #include "truebearing/tracker/raw_tracker.hpp"
 
@@ -66,6 +68,7 @@ TEST(Foretelling, TheFilterThatSuitsTheTargetForetellsBest) {
     EXPECT_GT(told.trackers[1].rmse.value, 50.0);
     EXPECT_NEAR(static_cast<double>(told.foretold), 400.0 / steps, 3.0);
     EXPECT_THAT(foretelling_text(told), AllOf(HasSubstr("second foretells best"), HasSubstr("below first")));
+    EXPECT_THAT(foretelling_text(told), HasSubstr(foretelling_verdict(told)));
   }
 }
 
@@ -89,9 +92,10 @@ TEST(Foretelling, MissesAreDistancesOrAngles) {
   record.x = Eigen::Vector4d(3000.0, 4000.0, 0.0, 0.0);
   Measurement measurement;
   std::string quantity;
+  SensorSites sites;
   const auto of = [&](const std::vector<std::string>& components, const BoundedVector& z) {
     measurement.z = z;
-    return miss(components, measurement, record, quantity).value_or(-1.0);
+    return miss(components, measurement, sites, record, quantity).value_or(-1.0);
   };
   EXPECT_NEAR(of({"east_m", "north_m"}, Eigen::Vector2d(3030.0, 4040.0)), 50.0, 1e-9);
   EXPECT_EQ(quantity, "position_m");
@@ -109,6 +113,13 @@ TEST(Foretelling, MissesAreDistancesOrAngles) {
   EXPECT_NEAR(
       of({"range_m", "bearing_deg", "elevation_deg"}, Eigen::Vector3d(slant_m, bearing_rad, elevation_rad + 0.01)),
       0.01 * slant_m, 1e-9);
+  // From a site below; and from a platform above it, or at its height where its own is not told.
+  sites.site_m = {{0.0, 0.0, -200.0}};
+  EXPECT_NEAR(of({"range_m"}, BoundedVector::Constant(1, std::hypot(5000.0, 700.0) + 3.0)), 3.0, 1e-9);
+  measurement.sensor = SensorState{Eigen::Vector2d(3000.0, 0.0), Eigen::Vector2d::Zero(), kNaN};
+  EXPECT_NEAR(of({"range_m"}, BoundedVector::Constant(1, std::hypot(4000.0, 700.0) + 3.0)), 3.0, 1e-9);
+  measurement.sensor->up_m = 100.0;
+  EXPECT_NEAR(of({"range_m"}, BoundedVector::Constant(1, std::hypot(4000.0, 400.0) + 3.0)), 3.0, 1e-9);
   record.space = &plane_space();
   EXPECT_EQ(of({"frequency_hz"}, BoundedVector::Constant(1, 300.0)), -1.0);
 }
@@ -133,6 +144,31 @@ TEST(Foretelling, WhoHasNoEstimateWhereNothingIsShownIsLeftOut) {
   ASSERT_EQ(told.trackers.size(), 1u);
   EXPECT_EQ(told.left_out, std::vector<std::string>{"raw"});
   EXPECT_THAT(foretelling_text(told), HasSubstr("raw: has no estimate"));
+  EXPECT_EQ(foretelling_verdict(told), "") << "of one alone";
+}
+
+// A radar that stands apart: measured from the origin the filter would miss by a kilometre.
+TEST(Foretelling, SeesFromTheSiteOfTheSensor) {
+  const Eigen::Vector2d site_m(600.0, -800.0);
+  Recording log = recording(60), radar = log;
+  radar.measured = {"range_m", "bearing_deg"};
+  for (Measurement& measurement : radar.measurements) {
+    const Eigen::Vector2d sight = measurement.z - site_m;
+    measurement.z = Eigen::Vector2d(sight.norm(), std::atan2(sight.x(), sight.y()));
+  }
+  const auto told = [&](const SensorSites& sites) {
+    Ensemble ensemble;
+    ensemble.add("filter",
+                 std::make_unique<FilterTracker>(
+                     plane_space(),
+                     make_filter_state(FilterKind::kalman, erased(ConstantVelocity<2, DiscreteWhiteNoise>{{1.0}})),
+                     sensor_of(ConvertedSensor{{{50.0, 0.05}, 1.0, site_m}}), TwoPointStart{}, FilterTrackerOptions{}));
+    TrackerSet set(std::move(ensemble));
+    set.show_member("filter");
+    return foretell(set, radar, 1, sites).trackers[0].rmse.value;
+  };
+  EXPECT_LT(told({{{600.0, -800.0, 0.0}}}), 200.0);
+  EXPECT_GT(told({}), 900.0);
 }
 
 TEST(Foretelling, ShortLogsAreRefused) {

@@ -3,12 +3,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "tests/support/error_message.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "truebearing/core/angle.hpp"
+#include "truebearing/recording/recording_csv.hpp"
 #include "truebearing/study/study.hpp"
+#include "truebearing/study/study_sites.hpp"
 
 namespace truebearing::sensors_test {
 namespace {
@@ -90,6 +95,48 @@ TEST(Sensors, TheirGatesAreTheirOwn) {
     EXPECT_EQ(records[0].status, measurement.source == 1 ? StepStatus::rejected : StepStatus::ok);
   }
   EXPECT_EQ(both->counts().gated, 1);
+}
+
+// A platform whose log tells its height; one whose log does not is as high as the site of the study.
+TEST(Sensors, PlatformsAreAsHighAsTheirLogSaysElseAsTheirSite) {
+  const Study study = study_of(R"(
+name = "space"
+[scenario]
+kind = "space_flight"
+output = "range_bearing_elevation"
+period_s = 1.0
+steps = 10
+flight = { speed_mps = 100.0, leg_s = 30.0, turn_s = 10.0, turn_rate_degps = 3.0, roll_in_s = 1.0 }
+start = { east_m = 0.0, north_m = 0.0, up_m = 1000.0 }
+sensor = { range_sigma_m = 1.0, bearing_sigma_deg = 1e-3, elevation_sigma_deg = 1e-3 }
+[trackers.radar]
+kind = "kalman"
+space = "space"
+motion = { model = "constant_velocity", noise = "discrete", sigma_a_mps2 = 1.0 }
+measurement = { model = "converted_range_bearing_elevation", range_sigma_m = 1.0, bearing_sigma_deg = 1e-3, elevation_sigma_deg = 1e-3, site_m = [0, 0, 300] }
+start = { kind = "one_point", velocity_sigma_mps = 100.0 }
+)");
+  const auto place_of = [&](const std::string& columns, const std::string& cells) {
+    std::istringstream log("time_s,range_m,bearing_deg,elevation_deg" + columns + "\n0,5000,90,30" + cells + "\n");
+    const Recording recording = read_recording(log, "log.csv", study.recording_options());
+    return Eigen::Vector3d(study.make_tracker("radar")->step(recording.measurements[0])[0].x.head<3>());
+  };
+  const Eigen::Vector3d sight_m(5000.0 * std::cos(radians(30.0)), 0.0, 2500.0);
+  EXPECT_LT((place_of("", "") - sight_m - Eigen::Vector3d(0, 0, 300)).norm(), 1e-3);
+  const std::string plane = ",sensor_east_m,sensor_north_m";
+  EXPECT_LT((place_of(plane, ",10,20") - sight_m - Eigen::Vector3d(10, 20, 300)).norm(), 1e-3);
+  EXPECT_LT((place_of(plane + ",sensor_up_m", ",10,20,0") - sight_m - Eigen::Vector3d(10, 20, 0)).norm(), 1e-3);
+}
+
+TEST(Sensors, StandWhereTheirStudySays) {
+  using Sites = std::vector<Eigen::Vector3d>;
+  EXPECT_EQ(sensor_sites(study_of(kScenario + kSensors + kTracker)).site_m, Sites(2, Eigen::Vector3d::Zero()));
+  const std::string apart = kSensors.substr(0, kSensors.find("[sensors.plots]")) + "site_m = [5, -6]\n" +
+                            kSensors.substr(kSensors.find("[sensors.plots]"));
+  EXPECT_EQ(sensor_sites(study_of(kScenario + apart + kTracker)).site_m,
+            (Sites{Eigen::Vector3d::Zero(), {5.0, -6.0, 0.0}}));
+  const Study space = Study::load(TRUEBEARING_SOURCE_DIR "/data/keys/space.toml");
+  EXPECT_EQ(sensor_sites(space).site_m, Sites(1, Eigen::Vector3d::Zero()));
 }
 
 TEST(Sensors, ClocksAreThoseOfTheSensorsByName) {

@@ -31,7 +31,7 @@ struct Foretold {
 
 // Of each sensor `steps` rows are hidden and as many shown in turn.
 void hide_and_foretell(const TrackerSet& trackers, const Recording& recording, std::size_t steps, bool first_half,
-                       std::string& quantity, std::vector<Foretold>& all) {
+                       const SensorSites& sites, std::string& quantity, std::vector<Foretold>& all) {
   TrackerSet set = trackers.fresh();
   std::map<int, std::size_t> seen;  // rows of each sensor
   for (std::size_t k = 0; k < recording.measurements.size(); ++k) {
@@ -47,7 +47,7 @@ void hide_and_foretell(const TrackerSet& trackers, const Recording& recording, s
       const std::span<const StepRecord> records = set.records(i);
       std::string of;
       std::optional<double> missed;
-      if (records.size() == 1) missed = miss(components_of(recording, measurement), measurement, records[0], of);
+      if (records.size() == 1) missed = miss(components_of(recording, measurement), measurement, sites, records[0], of);
       if (missed && quantity.empty()) quantity = of;
       one.missed.push_back(missed && of == quantity ? *missed : kNaN);
       one.gates.push_back(missed && records[0].correction ? records[0].correction->gate : kNaN);
@@ -73,9 +73,9 @@ Estimate difference_of(const std::vector<double>& a, const std::vector<double>& 
 }  // namespace
 
 std::optional<double> miss(const std::vector<std::string>& components, const Measurement& measurement,
-                           const StepRecord& record, std::string& quantity) {
+                           const SensorSites& sites, const StepRecord& record, std::string& quantity) {
   const BoundedVector &z = measurement.z, &x = record.x;
-  const SensorState sensor = measurement.sensor.value_or(SensorState{});
+  const SensorState sensor = sites.of(measurement);
   double squared = 0.0;
   int places = 0;
   for (std::size_t i = 0; i < components.size(); ++i) {
@@ -110,12 +110,12 @@ std::optional<double> miss(const std::vector<std::string>& components, const Mea
   return std::hypot(std::hypot(z[range] - range_m, sight.norm() * turned_rad), range_m * raised_rad);
 }
 
-Foretelling foretell(const TrackerSet& trackers, const Recording& recording, int steps) {
+Foretelling foretell(const TrackerSet& trackers, const Recording& recording, int steps, const SensorSites& sites) {
   constexpr std::size_t kLeast = 4;
   Foretelling told{steps, {}, 0, {}, 0, {}};
   std::vector<Foretold> all;
   for (const bool first_half : {false, true})
-    hide_and_foretell(trackers, recording, static_cast<std::size_t>(steps), first_half, told.quantity, all);
+    hide_and_foretell(trackers, recording, static_cast<std::size_t>(steps), first_half, sites, told.quantity, all);
   std::sort(all.begin(), all.end(), [](const Foretold& a, const Foretold& b) { return a.row < b.row; });
   std::vector<std::size_t> who;  // has estimates where measurements are hidden
   for (std::size_t i = 0; i < static_cast<std::size_t>(trackers.size()); ++i) {
@@ -152,16 +152,26 @@ Foretelling foretell(const TrackerSet& trackers, const Recording& recording, int
   return told;
 }
 
+std::string foretelling_verdict(const Foretelling& told) {
+  const Foretelling::Tracker& best = told.trackers[told.best];
+  const Foretelling::Tracker* next = nullptr;
+  for (const Foretelling::Tracker& one : told.trackers)
+    if (&one != &best && (!next || one.rmse.value < next->rmse.value)) next = &one;
+  if (!next) return {};
+  const double errors = next->above_best.value / next->above_best.se;
+  if (!(errors > kStudent))
+    return fmt::format("{} and {} foretell alike: no difference can be told", best.name, next->name);
+  return fmt::format("{} foretells best: {:.2g} % below {} ({:.1f} standard errors)", best.name,
+                     100.0 * (1.0 - best.rmse.value / next->rmse.value), next->name, errors);
+}
+
 std::string foretelling_text(const Foretelling& told) {
   constexpr double kShut = 0.05;
   const std::string title = title_of(told.quantity);
   std::vector<std::vector<std::string>> rows{
       {"foretold", fmt::format("{} RMSE", title), "+-", "squared, above the best", "in standard errors"}};
-  const Foretelling::Tracker& best = told.trackers[told.best];
-  const Foretelling::Tracker* next = nullptr;
   for (const Foretelling::Tracker& one : told.trackers) {
-    const bool is_best = &one == &best;
-    if (!is_best && (!next || one.rmse.value < next->rmse.value)) next = &one;
+    const bool is_best = &one == &told.trackers[told.best];
     rows.push_back({one.name, fmt::format("{:.4g}{}", one.rmse.value, is_best ? "*" : ""),
                     fmt::format("{:.2g}", one.rmse.se), is_best ? "" : fmt::format("{:.3g}", one.above_best.value),
                     one.above_best.se > 0.0 ? fmt::format("{:.1f}", one.above_best.value / one.above_best.se) : ""});
@@ -175,12 +185,7 @@ std::string foretelling_text(const Foretelling& told) {
     if (one.mean_gate < kShut)
       text += fmt::format(
           "{}: its gate is shut where measurements are hidden, and its figure is that of what it trusts\n", one.name);
-  if (!next) return text;
-  const double errors = next->above_best.value / next->above_best.se;
-  text += errors > kStudent
-              ? fmt::format("{} foretells best: {:.2g} % below {} ({:.1f} standard errors)\n", best.name,
-                            100.0 * (1.0 - best.rmse.value / next->rmse.value), next->name, errors)
-              : fmt::format("{} and {} foretell alike: no difference can be told\n", best.name, next->name);
+  if (const std::string verdict = foretelling_verdict(told); !verdict.empty()) text += verdict + "\n";
   return text;
 }
 

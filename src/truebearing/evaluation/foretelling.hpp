@@ -3,7 +3,7 @@
 // in turn, and what a tracker foretells of the last hidden one, n of its steps ahead, is held against it. Then the other
 // half is hidden. The measurements' own noise is in every error alike, so that the differences are the trackers'. Who looks
 // back is scored as the filter that it is without knowing what comes. Where a sensor stands is what its measurements say,
-// else the origin; biases that a tracker takes off are not taken off here.
+// else its site; biases that a tracker takes off are not taken off here.
 #pragma once
 
 #include <cstddef>
@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "truebearing/evaluation/sensor_sites.hpp"
 #include "truebearing/evaluation/statistics.hpp"
 #include "truebearing/evaluation/tracker_set.hpp"
 #include "truebearing/recording/recording.hpp"
@@ -37,14 +38,15 @@ struct Foretelling {
 
 /// How far a record is from a measurement of those components: in m of a place on the line, in the plane or in space, of
 /// a range or by range, bearing and elevation from where the sensor was, else in degrees of bearing and elevation; nothing
-/// of others. `quantity`
-/// becomes its name.
+/// of others. `quantity` becomes its name.
 std::optional<double> miss(const std::vector<std::string>& components, const Measurement& measurement,
-                           const StepRecord& record, std::string& quantity);
+                           const SensorSites& sites, const StepRecord& record, std::string& quantity);
 
 /// Throws InputError where nothing is foretold that could be compared: of several targets, of arrays, of short logs.
-Foretelling foretell(const TrackerSet& trackers, const Recording& recording, int steps);
+Foretelling foretell(const TrackerSet& trackers, const Recording& recording, int steps, const SensorSites& sites = {});
 
+/// Who foretells best, or that no difference can be told; empty of one tracker alone.
+std::string foretelling_verdict(const Foretelling& foretelling);
 /// As a table, and who foretells best in a sentence.
 std::string foretelling_text(const Foretelling& foretelling);
 

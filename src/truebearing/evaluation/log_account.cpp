@@ -31,7 +31,8 @@ void add_innovation(const StepRecord& record, double time_s, TrackerOnLog::Innov
 
 }  // namespace
 
-LogFollower::LogFollower(const TrackerSet& trackers) : trackers_(trackers.fresh()), canvas_(drawn_space(trackers)) {
+LogFollower::LogFollower(const TrackerSet& trackers, SensorSites sites)
+    : trackers_(trackers.fresh()), sites_(std::move(sites)), canvas_(drawn_space(trackers)) {
   account_.picture.in_plane = canvas_.in_plane();
   account_.picture.component = canvas_.component();
   for (int i = 0; i < trackers_.size(); ++i) account_.trackers.push_back({trackers_.name(i), {}, {}});
@@ -39,7 +40,7 @@ LogFollower::LogFollower(const TrackerSet& trackers) : trackers_(trackers.fresh(
 
 void LogFollower::follow(const Recording& recording, int number, double epoch_s) {
   trackers_.reset();
-  canvas_.add_measured(recording, account_.picture);
+  canvas_.add_measured(recording, sites_, account_.picture);
   if (account_.picture.beam.time_s.empty()) canvas_.add_beam(recording, account_.picture);
   std::vector<TrackerCounts> before(account_.trackers.size());
   std::vector<Measurement> measurements = recording.measurements;

@@ -41,7 +41,7 @@ struct LogAccount {
 /// Runs trackers over logs and keeps account of it.
 class LogFollower {
  public:
-  explicit LogFollower(const TrackerSet& trackers);
+  explicit LogFollower(const TrackerSet& trackers, SensorSites sites = {});
 
   /// Follows a log afresh; of several, tracks are told apart by adding `number`. epoch_s: the log's time at which the
   /// trackers' clock is 0.
@@ -52,6 +52,7 @@ class LogFollower {
   void take_step(std::size_t tracker, const TrackerCounts& before, double time_s);
 
   TrackerSet trackers_;
+  SensorSites sites_;
   RunCanvas canvas_;
   LogAccount account_;
 };

@@ -45,7 +45,7 @@ void RunCanvas::add(const StepRecord& record, DrawnTrack& track) const {
   track.yy.push_back((plane_ ? 1.0 : scale_ * scale_) * variance(second, second));
 }
 
-void RunCanvas::add_measured(const Recording& recording, RunPicture& picture) const {
+void RunCanvas::add_measured(const Recording& recording, const SensorSites& sites, RunPicture& picture) const {
   for (const Measurement& measurement : recording.measurements) {
     const std::vector<std::string>& measured = components_of(recording, measurement);
     const int east = place_of(measured, "east_m"), north = place_of(measured, "north_m");
@@ -53,7 +53,7 @@ void RunCanvas::add_measured(const Recording& recording, RunPicture& picture) co
     const int elevation = place_of(measured, "elevation_deg");
     const int value = place_of(measured, component_);
     const bool sights = plane_ && bearing >= 0 && range < 0;
-    const SensorState sensor = measurement.sensor.value_or(SensorState{});
+    const SensorState sensor = sites.of(measurement);
     const auto z = [&](int i) { return i < measurement.z.size() ? measurement.z(i) : kNaN; };
     BoundedVector at(2);
     if (sights) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "truebearing/evaluation/run_picture.hpp"
+#include "truebearing/evaluation/sensor_sites.hpp"
 
 namespace truebearing {
 
@@ -24,8 +25,8 @@ class RunCanvas {
   /// A record of another space than the canvas's is drawn where it has the same components.
   void add(const StepRecord& record, DrawnTrack& track) const;
 
-  /// The measurements of a recording. Bearings are clockwise from North.
-  void add_measured(const Recording& recording, RunPicture& picture) const;
+  /// The measurements of a recording. Bearings are clockwise from North, seen from where they say, else from the sites.
+  void add_measured(const Recording& recording, const SensorSites& sites, RunPicture& picture) const;
   /// What a line array heard, where the recording is of one: at no more than some hundred of its times.
   void add_beam(const Recording& recording, RunPicture& picture) const;
   /// Records of a tracker of that name, each to the end of its track's line.

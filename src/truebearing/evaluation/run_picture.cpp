@@ -16,7 +16,8 @@ int index_in(const std::vector<std::string>& names, const std::string& name) {
   return found == names.end() ? -1 : static_cast<int>(found - names.begin());
 }
 
-RunPicture draw(TrackerSet trackers, const std::vector<std::string>& drawn, const Recording& recording) {
+RunPicture draw(TrackerSet trackers, const std::vector<std::string>& drawn, const Recording& recording,
+                const SensorSites& sites) {
   RunPicture picture;
   const RunCanvas canvas(*recording.truth_space);
   picture.in_plane = canvas.in_plane();
@@ -27,7 +28,7 @@ RunPicture draw(TrackerSet trackers, const std::vector<std::string>& drawn, cons
     for (std::size_t step = 0; step < truth.x.size(); ++step)
       canvas.add(recording.measurements[step].time_s, truth.x[step], line);
   }
-  canvas.add_measured(recording, picture);
+  canvas.add_measured(recording, sites, picture);
   canvas.add_beam(recording, picture);
   trackers.foresee(recording.measurements);
   for (const Measurement& measurement : recording.measurements) {
@@ -52,7 +53,8 @@ std::vector<std::string> drawn_trackers(const Comparison& comparison) {
 }
 
 std::vector<RunPicture> picture_runs(const TrackerSet& trackers, const std::vector<NamedScenario>& scenarios,
-                                     const ComparisonOptions& options, const Comparison& comparison) {
+                                     const ComparisonOptions& options, const Comparison& comparison,
+                                     const SensorSites& sites) {
   const std::vector<std::string> drawn = drawn_trackers(comparison);
   if (drawn.empty() || comparison.details.size() != comparison.trackers.size()) return {};
   std::size_t judge = 0;
@@ -72,7 +74,7 @@ std::vector<RunPicture> picture_runs(const TrackerSet& trackers, const std::vect
   for (const auto& [which, run] : chosen) {
     const NamedScenario& scenario = scenarios[run / options.runs];
     const RunKey key{options.seed, options.role, run % options.runs};
-    RunPicture picture = draw(trackers.fresh(), drawn, scenario.scenario->simulate(key));
+    RunPicture picture = draw(trackers.fresh(), drawn, scenario.scenario->simulate(key), sites);
     picture.which = which;
     picture.run = run % options.runs;
     if (scenarios.size() > 1) picture.set = scenario.name;

@@ -8,6 +8,7 @@
 
 #include "truebearing/core/constants.hpp"
 #include "truebearing/evaluation/comparison.hpp"
+#include "truebearing/evaluation/sensor_sites.hpp"
 
 namespace truebearing {
 
@@ -55,6 +56,7 @@ std::vector<std::string> drawn_trackers(const Comparison& comparison);
 /// The best, the median and the worst run by that tracker's RMSE in its first quantity. Runs again what they are of.
 /// Empty where the comparison has no details, or no run was scored.
 std::vector<RunPicture> picture_runs(const TrackerSet& trackers, const std::vector<NamedScenario>& scenarios,
-                                     const ComparisonOptions& options, const Comparison& comparison);
+                                     const ComparisonOptions& options, const Comparison& comparison,
+                                     const SensorSites& sites = {});
 
 }  // namespace truebearing

@@ -15,6 +15,7 @@
 namespace truebearing::filter_trackers_test {
 namespace {
 
+using ::testing::AllOf;
 using testing::bearings_run;
 using testing::error_message;
 using ::testing::HasSubstr;
@@ -84,6 +85,24 @@ TEST(BearingTrackers, RefuseWhatBearingsCannotGive) {
   EXPECT_THAT(refusal(kBearings + kGuessed + "ranges = 6\n"), HasSubstr("ranges"));
   EXPECT_THAT(refusal("measurement = { model = \"bearing\", bearing_sigma_deg = 1.0 }\nmodes = []\n", "imm"),
               HasSubstr("modes"));
+}
+
+// A climb that is known better than the flight; in the plane there is none.
+TEST(FilterTrackers, BeginWithAClimbOfTheirOwn) {
+  const std::string start = "start = { kind = \"one_point\", velocity_sigma_mps = 100.0, climb_sigma_mps = 5.0 }\n";
+  const auto of_model = [&](const std::string& model, const std::string& space) {
+    return make("space = \"" + space +
+                    "\"\nmotion = { model = \"constant_velocity\", noise = \"continuous\", "
+                    "q_m2ps3 = 1.0 }\nmeasurement = { model = \"" +
+                    model + "\", sigma_m = 10.0 }\n" + start,
+                "kalman");
+  };
+  Measurement first{.time_s = 0.0, .z = Eigen::Vector3d(1.0, 2.0, 3.0), .sigma = {}, .sensor = {}};
+  const StepRecord record = of_model("position", "space")->step(first)[0];
+  EXPECT_EQ(record.P(4, 4), 1e4);
+  EXPECT_EQ(record.P(5, 5), 25.0);
+  EXPECT_THAT(error_message([&] { of_model("position", "plane"); }),
+              AllOf(HasSubstr("climb_sigma_mps: has no meaning but in space"), HasSubstr("velocity_sigma_mps alone")));
 }
 
 TEST(RangeBankMaker, RefusesWhatMakesNoBank) {

@@ -147,5 +147,13 @@ TEST(SpaceSensor, BeginsWithOnePlaceOrWithTwo) {
   }
 }
 
+// Aircraft climb more slowly than they fly.
+TEST(SpaceSensor, ItsStartMayKnowMoreOfTheClimb) {
+  const PositionFix fix{Eigen::Vector3d(1.0, 2.0, 3.0), 4.0 * Eigen::Matrix3d::Identity()};
+  const PriorStart start = one_point_state(fix, {.velocity_sigma_mps = 100.0, .climb_sigma_mps = 5.0});
+  EXPECT_EQ(start.P.diagonal(), (BoundedVector{{4.0, 4.0, 4.0, 1e4, 1e4, 25.0}}));
+  EXPECT_EQ(one_point_state(fix, {.velocity_sigma_mps = 100.0}).P(5, 5), 1e4);
+}
+
 }  // namespace
 }  // namespace truebearing::space_sensor_test

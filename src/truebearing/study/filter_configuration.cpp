@@ -37,6 +37,14 @@ PriorStart read_prior_start(TableReader& table, int states) {
   return prior;
 }
 
+// Aircraft climb more slowly than they fly.
+double read_climb_sigma(TableReader& table, const MeasurementChoice& measurement) {
+  if (!table.has("climb_sigma_mps")) return 0.0;
+  if (measurement.dimensions() != 3)
+    throw table.error("climb_sigma_mps", "has no meaning but in space", "velocity_sigma_mps alone");
+  return table.number("climb_sigma_mps", kPositive);
+}
+
 Start read_start(TableReader& tracker, const MeasurementChoice& measurement, int states) {
   TableReader table = tracker.table("start");
   std::vector<std::string> kinds{"prior"};
@@ -52,7 +60,8 @@ Start read_start(TableReader& tracker, const MeasurementChoice& measurement, int
   } else if (kind == "one_point") {
     const double velocity_sigma_mps = table.number("velocity_sigma_mps", kPositive);
     const double position_sigma_m = table.has("position_sigma_m") ? table.number("position_sigma_m", kPositive) : 0.0;
-    start = OnePointStart{velocity_sigma_mps, read_rest(table, states, measurement.leading()), position_sigma_m};
+    start = OnePointStart{velocity_sigma_mps, read_rest(table, states, measurement.leading()), position_sigma_m,
+                          read_climb_sigma(table, measurement)};
   } else {
     start = TwoPointStart{read_rest(table, states, measurement.leading())};
   }

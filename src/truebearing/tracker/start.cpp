@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "truebearing/tracker/start.hpp"
 
+#include <cmath>
+
 namespace truebearing {
 
 PriorStart one_point_state(PositionFix fix, const OnePointStart& one_point) {
@@ -11,6 +13,7 @@ PriorStart one_point_state(PositionFix fix, const OnePointStart& one_point) {
                    velocity_sigma_mps * velocity_sigma_mps * BoundedMatrix::Identity(2 * d, 2 * d)};
   start.x.head(d) = fix.z;
   start.P.topLeftCorner(d, d) = fix.R;
+  if (one_point.climb_sigma_mps > 0.0) start.P(2 * d - 1, 2 * d - 1) = std::pow(one_point.climb_sigma_mps, 2.0);
   return start;
 }
 

@@ -22,6 +22,7 @@ struct OnePointStart {
   double velocity_sigma_mps = 0.0;  ///< per axis
   double rest_sigma = 0.0;          ///< of each component behind the velocities, which begin at 0
   double position_sigma_m = 0.0;    ///< per axis, in place of R where it is given; else 0
+  double climb_sigma_mps = 0.0;     ///< in space of v_up, in place of velocity_sigma_mps where it is given; else 0
 };
 
 /// Two-point differencing (Bar-Shalom, Li and Kirubarajan 2001, sec. 5.5.3) of measured positions z1, z2 (d), dt apart,

@@ -68,6 +68,43 @@ TEST(GeographicTrack, PositionsAreMetresFromTheMiddleOfTheArea) {
   }
 }
 
+// The plane that touches the Earth in the middle of the track is above it elsewhere.
+TEST(GeographicTrack, AltitudesCountInSpace) {
+  std::string text = "time_s,latitude_deg,longitude_deg,altitude_ft\n";
+  for (int k = 0; k <= 30; ++k)
+    text += fmt::format("{},{},7.5,{}\n", k, kLatitude_deg + kStep_deg * (k - 15.0),
+                        k == 4 ? "" : fmt::format("{}", 1000.0 + 10.0 * k));
+  const GeographicTracks tracks = read(text, {.in_space = true});
+  EXPECT_TRUE(tracks.has_altitude);
+  const Recording& recording = tracks.recordings.at(0);
+  EXPECT_THAT(recording.measured, ElementsAre("east_m", "north_m", "up_m"));
+  EXPECT_EQ(recording.truth_space, &space_space());
+  EXPECT_NEAR(recording.measurements[15].z[2], 1150.0 * 0.3048, 1e-6);
+  EXPECT_NEAR(recording.measurements[30].z[2], 1300.0 * 0.3048 - std::pow(15.0 * kStep_m, 2.0) / (2.0 * 6.37e6), 0.01);
+  EXPECT_NEAR(recording.measurements[30].z[1], 15.0 * kStep_m * (1.0 + 396.0 / 6.37e6), 0.1);
+  EXPECT_NEAR(recording.truth[0].x[15][5], 3.048, 1e-3);
+  EXPECT_NEAR(recording.truth[0].x[15][4], kStep_m, 0.02);
+  EXPECT_TRUE(recording.measurements[4].is_missing()) << "of unknown height";
+  EXPECT_EQ(recording.counts.missing, 1);
+  const GeographicTracks plane = read(text);
+  EXPECT_EQ(plane.recordings.at(0).measurements[4].z.size(), 2);
+  EXPECT_EQ(plane.recordings.at(0).counts.missing, 0);
+  EXPECT_THAT(error_message([] { read(northbound(), {.in_space = true}); }),
+              AllOf(HasSubstr("has no altitude"), HasSubstr("altitude_m")));
+}
+
+// What the target says of its course and speed is of the plane; how fast it climbs is told by its heights.
+TEST(GeographicTrack, RecordedVelocityInSpaceIsAlongTheGround) {
+  std::string text = "time_s,latitude_deg,longitude_deg,altitude_m,groundspeed_kn,track_deg\n";
+  for (int k = 0; k <= 30; ++k)
+    text += fmt::format("{},{},7.5,{},100,90\n", k, kLatitude_deg + kStep_deg * (k - 15.0), 5 * k);
+  const Recording recording = read(text, {.recorded_velocity = true, .in_space = true}).recordings.at(0);
+  const BoundedVector& x = recording.truth[0].x[15];
+  EXPECT_NEAR(x[3], 100.0 * 1852.0 / 3600.0, 1e-9);
+  EXPECT_NEAR(x[4], 0.0, 1e-9);
+  EXPECT_NEAR(x[5], 5.0, 1e-3);
+}
+
 TEST(GeographicTrack, TheDateLineIsNoEdge) {
   std::string text = "time_s,latitude_deg,longitude_deg\n";
   for (int k = 0; k <= 30; ++k)
@@ -307,6 +344,21 @@ TEST(GeographicTrack, RecordedFlightIsCleanedOfItsGlitches) {
     if (!last || measurement.z != last->z) since_s = measurement.time_s;
     last = &measurement;
   }
+}
+
+// It climbs to 10 700 feet above the ellipsoid, which curves away under the plane.
+TEST(GeographicTrack, RecordedFlightHasItsHeights) {
+  const std::filesystem::path path = testing::real_data("flight_ajaccio.csv");
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is absent";
+  const Recording flight = read_geographic_tracks(path, {.max_speed_mps = 400.0, .in_space = true}).recordings.at(0);
+  double highest_m = 0.0, fastest_mps = 0.0;
+  for (const BoundedVector& x : flight.truth[0].x) {
+    highest_m = std::fmax(highest_m, x[2] + x.head<2>().squaredNorm() / (2.0 * 6.37e6));
+    fastest_mps = std::fmax(fastest_mps, std::abs(x[5]));
+  }
+  EXPECT_NEAR(highest_m, 10700.0 * 0.3048, 10.0);
+  EXPECT_LT(fastest_mps, 25.0);
+  EXPECT_EQ(flight.counts.missing, 0);
 }
 
 TEST(GeographicTrack, RecordedVesselsAreToldApart) {

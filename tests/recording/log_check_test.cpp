@@ -41,6 +41,16 @@ TEST(LogCheck, SaysWhatColumnsAreTakenFor) {
   EXPECT_EQ(report.last_s, 116.0);
 }
 
+TEST(LogCheck, SaysWhoTakesNoticeOfAltitudes) {
+  std::string text = "time_s,latitude_deg,longitude_deg,altitude_ft\n";
+  for (int k = 0; k < 30; ++k) text += fmt::format("{},{},7.5,{}\n", k, 45.0 + 0.001 * k, 1000 + k);
+  const LogReport report = check(text);
+  EXPECT_TRUE(report.is_usable());
+  EXPECT_EQ(report.columns[3].taken_for, "height, to studies in space alone: altitude_m");
+  EXPECT_EQ(report.columns[3].unit, "ft");
+  EXPECT_EQ(report.columns[3].greatest, 1029.0);
+}
+
 TEST(LogCheck, CountsGapsAndRepeatedRows) {
   const LogReport report = check("time_s,position_m\n0,1\n1,2\n2,3\n2,3\n3,4\n9,5\n");
   EXPECT_TRUE(report.is_usable());

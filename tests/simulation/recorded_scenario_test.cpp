@@ -172,7 +172,7 @@ TEST(RecordedScenario, SnapshotsAreReplayedWithTheTruthOfAllTargets) {
 
 TEST(RecordedScenario, PositionsMustBeThoseOfThePlane) {
   EXPECT_THAT(error_message([] { RecordedScenario({}, RecordedSensor{}); }), HasSubstr("no track"));
-  EXPECT_THAT(error_message([] { RecordedScenario({read(kLog)}, RecordedSensor{}); }), HasSubstr("east_m and north_m"));
+  EXPECT_THAT(error_message([] { RecordedScenario({read(kLog)}, RecordedSensor{}); }), HasSubstr("east_m, north_m with their truth"));
 }
 
 }  // namespace

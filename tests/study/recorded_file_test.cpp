@@ -67,6 +67,74 @@ TEST_F(RecordedFileTest, SigmaIsReportedWhereTheSimulatedSensorReportsIt) {
   EXPECT_EQ(recorded->simulate({}).measurements[0].sigma, Eigen::Vector2d(50, 50));
 }
 
+const std::string kSpaceStudy = R"(name = "space"
+[recorded]
+position_sigma_m = 20.0
+[scenario]
+kind = "space_flight"
+output = "space"
+period_s = 1.0
+steps = 10
+flight = { speed_mps = 100.0, leg_s = 30.0, turn_s = 10.0, turn_rate_degps = 3.0, roll_in_s = 1.0 }
+start = { east_m = 0.0, north_m = 0.0, up_m = 1000.0 }
+sensor = { position_sigma_m = 20.0 }
+[trackers.filter]
+kind = "kalman"
+space = "space"
+motion = { model = "constant_velocity", noise = "continuous", q_m2ps3 = 1.0 }
+measurement = { model = "position", sigma_m = 20.0 }
+start = { kind = "one_point", velocity_sigma_mps = 100.0, climb_sigma_mps = 10.0 }
+)";
+const std::string kSpaceRadar =
+    replaced(replaced(kSpaceStudy, "output = \"space\"", "output = \"range_bearing_elevation\""),
+             "sensor = { position_sigma_m = 20.0 }",
+             "sensor = { range_sigma_m = 10.0, bearing_sigma_deg = 0.1, elevation_sigma_deg = 0.1 }");
+
+TEST_F(RecordedFileTest, InSpaceAltitudesAreMeasured) {
+  const std::filesystem::path one = folder_.write("one.csv", flight(25, 45));
+  const Study study = load(kSpaceStudy);
+  const auto recorded = study.recorded_scenario(one);
+  const Recording recording = recorded->simulate({});
+  EXPECT_EQ(&recorded->truth_space(), &space_space());
+  ASSERT_EQ(recording.measurements[3].z.size(), 3);
+  EXPECT_NEAR(recording.truth[0].x[12][2], 304.8, 0.2);
+  const Eigen::Vector3d noise = recording.measurements[3].z - recording.truth[0].x[3].head<3>();
+  EXPECT_TRUE(noise.norm() > 0.1 && noise.norm() < 120.0) << noise.transpose();
+
+  // A radar below the track's middle looks straight up there.
+  const std::string radar = replaced(
+      replaced(
+          kSpaceRadar, "position_sigma_m = 20.0\n[scenario]",
+          "range_sigma_m = 1e-3\nbearing_sigma_deg = 1e-6\nelevation_sigma_deg = 1e-6\nsite = [0, 0, 4.8]\n[scenario]"),
+      "model = \"position\", sigma_m = 20.0",
+      "model = \"range_bearing_elevation\", range_sigma_m = 10.0, bearing_sigma_deg = 0.1, elevation_sigma_deg = 0.1");
+  const Study radar_study = load(radar);
+  const Recording seen = radar_study.recorded_scenario(one)->simulate({});
+  EXPECT_EQ(seen.measured[2], "elevation_deg");
+  EXPECT_NEAR(seen.measurements[12].z[0], 300.0, 0.2);
+  EXPECT_NEAR(seen.truth[0].x[12][2], 300.0, 0.2);
+  EXPECT_NEAR(seen.measurements[24].z[2], std::atan2(300.0, 12 * 111.1), 1e-3);
+  EXPECT_THAT(error_message([&] {
+                load(replaced(radar, "elevation_sigma_deg = 1e-6\nsite = [0, 0, 4.8]", "site = [0, 0]"))
+                    .recorded_scenario(one)
+                    ->note();
+              }),
+              AllOf(HasSubstr("study.toml: recorded: tells no elevation"), HasSubstr("elevation_sigma_deg beside")));
+}
+
+TEST_F(RecordedFileTest, InThePlaneAltitudesAreNotUsedWhichIsSaid) {
+  folder_.write("one.csv", flight(25, 45));
+  folder_.write("folder/two.csv", flight(25, 45));
+  EXPECT_THAT(load(kPlaneStudy).evaluation_scenarios()[0].scenario->note(),
+              HasSubstr("altitudes not used in the plane"));
+  const std::string radar =
+      replaced(kPlaneStudy, "position_sigma_m = 50.0\n",
+               "range_sigma_m = 10.0\nbearing_sigma_deg = 0.1\nelevation_sigma_deg = 0.1\nsite = [0, 0, 0]\n");
+  EXPECT_THAT(
+      error_message([&] { load(radar).evaluation_scenarios()[0].scenario->note(); }),
+      AllOf(HasSubstr("tells an elevation, and the study is in the plane"), HasSubstr("no elevation_sigma_deg")));
+}
+
 TEST_F(RecordedFileTest, SnapshotLogIsReplayedWithItsTargets) {
   const std::filesystem::path path = folder_.path() / "log.h5";
   Recording recorded = testing::array_recording();

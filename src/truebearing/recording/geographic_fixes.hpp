@@ -19,11 +19,14 @@ struct GeographicFix {
   double latitude_deg;  // NaN, both, where there is none
   double longitude_deg;
   Eigen::Vector2d velocity_mps{kNaN, kNaN};  // East, North, as the target itself said
+  double altitude_m = kNaN;                  // above the ellipsoid; NaN where there is none
 
   bool is_missing() const { return std::isnan(latitude_deg); }
   bool operator==(const GeographicFix& other) const {
+    const auto same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
     return time_s == other.time_s && ((is_missing() && other.is_missing()) ||
-                                      (latitude_deg == other.latitude_deg && longitude_deg == other.longitude_deg));
+                                      (latitude_deg == other.latitude_deg && longitude_deg == other.longitude_deg &&
+                                       same(altitude_m, other.altitude_m)));
   }
 };
 

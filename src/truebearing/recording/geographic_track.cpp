@@ -28,6 +28,7 @@ struct FixColumns {
   LogColumn latitude, longitude;
   std::optional<std::size_t> target;
   std::optional<LogColumn> speed, course;  // both or neither
+  std::optional<LogColumn> altitude;
 };
 
 LogColumn required_angle(const CsvReader& csv, const std::string& stem) {
@@ -41,7 +42,8 @@ FixColumns find_columns(const CsvReader& csv, const RecordingOptions& options) {
                      required_angle(csv, "longitude"),
                      find_target_column(csv, options),
                      std::nullopt,
-                     std::nullopt};
+                     std::nullopt,
+                     find_column(csv, "altitude", Dimension::length)};
   for (const auto& [speed, course] :
        {std::pair("groundspeed", "track"), std::pair("sog", "cog"), std::pair("speed", "course")}) {
     const auto speed_column = find_column(csv, speed, Dimension::speed);
@@ -90,6 +92,7 @@ GeographicFix read_fix(const CsvReader& csv, FixColumns& columns, std::size_t& n
                     read_angle(csv, columns.longitude, kLongitude, has_no_position)};
   not_available += has_no_position;
   if (columns.speed) fix.velocity_mps = read_velocity(csv, columns, not_available);
+  if (columns.altitude) fix.altitude_m = csv.number(columns.altitude->index) * columns.altitude->factor;
   if (std::isnan(fix.latitude_deg) || std::isnan(fix.longitude_deg)) fix.latitude_deg = fix.longitude_deg = kNaN;
   return fix;
 }
@@ -192,6 +195,10 @@ std::vector<std::size_t> stretches(const GeographicTarget& target, double max_ga
 // Returns the highest speed, whether it is scored or not.
 double complete_truth(const GeographicTarget& target, const GeographicTrackOptions& options,
                       std::vector<BoundedVector>& x) {
+  const StateSpace& space = options.in_space ? space_space() : plane_space();
+  const int d = space.size() / 2;
+  std::vector<bool> given(space.components.size(), false);
+  std::fill_n(given.begin(), options.recorded_velocity ? d + 2 : d, true);
   std::vector<double> time_s;
   for (const GeographicFix& fix : target.fixes) time_s.push_back(fix.time_s);
   std::vector<std::size_t> starts = stretches(target, options.max_gap_periods);
@@ -199,15 +206,14 @@ double complete_truth(const GeographicTarget& target, const GeographicTrackOptio
   for (std::size_t i = 0; i + 1 < starts.size(); ++i) {
     const std::size_t count = starts[i + 1] - starts[i];
     if (options.recorded_velocity)
-      for (std::size_t k = starts[i]; k < starts[i + 1]; ++k) x[k].tail<2>() = target.fixes[k].velocity_mps;
-    else
-      complete_velocities(plane_space(), {true, true, false, false}, std::span(time_s).subspan(starts[i], count),
-                          std::span(x).subspan(starts[i], count));
+      for (std::size_t k = starts[i]; k < starts[i + 1]; ++k) x[k].segment<2>(d) = target.fixes[k].velocity_mps;
+    complete_velocities(space, given, std::span(time_s).subspan(starts[i], count),
+                        std::span(x).subspan(starts[i], count));
   }
   for (std::size_t i = 1; i + 1 < starts.size(); ++i) x[starts[i]].setConstant(kNaN);
   double fastest_mps = 0.0;
   for (BoundedVector& state : x) {
-    const double speed_mps = state.tail<2>().norm();
+    const double speed_mps = state.segment<2>(d).norm();  // along the ground
     if (speed_mps > fastest_mps) fastest_mps = speed_mps;
     if (speed_mps < options.min_speed_mps) state.setConstant(kNaN);
   }
@@ -217,18 +223,22 @@ double complete_truth(const GeographicTarget& target, const GeographicTrackOptio
 Recording make_recording(const GeographicTarget& target, const GeographicTrackOptions& options, double& fastest_mps) {
   const GeographicLib::LocalCartesian frame = local_frame(target);
   Recording recording;
-  recording.measured = {"east_m", "north_m"};
-  recording.truth_space = &plane_space();
+  recording.truth_space = options.in_space ? &space_space() : &plane_space();
+  const int d = recording.truth_space->size() / 2;
+  recording.measured = Measured::position(d).components;
   recording.truth.resize(1);
   for (const GeographicFix& fix : target.fixes) {
     Measurement measurement;
     measurement.time_s = fix.time_s;
-    measurement.z = BoundedVector::Constant(2, kNaN);
-    double up_m = 0.0;
-    if (!fix.is_missing())
-      frame.Forward(fix.latitude_deg, fix.longitude_deg, 0.0, measurement.z[0], measurement.z[1], up_m);
-    BoundedVector x = BoundedVector::Constant(4, kNaN);
-    x.head<2>() = measurement.z;
+    measurement.z = BoundedVector::Constant(d, kNaN);
+    const double altitude_m = options.in_space ? fix.altitude_m : 0.0;
+    Eigen::Vector3d place_m;
+    if (!fix.is_missing() && !std::isnan(altitude_m)) {
+      frame.Forward(fix.latitude_deg, fix.longitude_deg, altitude_m, place_m[0], place_m[1], place_m[2]);
+      measurement.z = place_m.head(d);
+    }
+    BoundedVector x = BoundedVector::Constant(2 * d, kNaN);
+    x.head(d) = measurement.z;
     recording.counts.missing += measurement.is_missing();
     recording.measurements.push_back(std::move(measurement));
     recording.truth[0].x.push_back(std::move(x));
@@ -258,6 +268,9 @@ GeographicTracks read_geographic_tracks(CsvReader csv, const GeographicTrackOpti
   GeographicTrackOptions believed = options;
   const FixColumns columns = find_columns(csv, recording);
   believed.recorded_velocity &= columns.speed.has_value();
+  tracks.has_altitude = columns.altitude.has_value();
+  if (options.in_space && !columns.altitude)
+    throw InputError(csv.name(), "has no altitude, which a study in space needs", "a column altitude_m");
   std::size_t rows = 0, glitches = 0;
   for (GeographicTarget& target : read_targets(csv, recording, tracks)) {
     put_in_order(target);
@@ -307,6 +320,7 @@ std::vector<LogColumn> geographic_columns(const CsvReader& csv, const RecordingO
   if (found.target) take({*found.target, ColumnRole::target, "target"}, ColumnRole::target);
   if (found.speed) take(*found.speed, ColumnRole::velocity);
   if (found.course) take(*found.course, ColumnRole::velocity);
+  if (found.altitude) take(*found.altitude, ColumnRole::altitude);
   return columns;
 }
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Recorded positions on the globe as recordings in the plane: CSV with a time (time_column.hpp), `latitude_deg` and
 // `longitude_deg` (WGS-84), and optionally `vessel`, `flight`, `track`, `mmsi`, `icao24` or `callsign`, a text that tells
-// targets apart whose rows are interleaved. Other columns are passed over. What a transponder says of its own course and speed is no truth as a rule; it is taken
-// for one only on request, for a recording whose positions are too rough to differentiate.
+// targets apart whose rows are interleaved, and in space `altitude_m` above the ellipsoid. Other columns are passed
+// over. What a transponder says of its own course and speed is no truth as a rule; it is taken for one only on request,
+// for a recording whose positions are too rough to differentiate.
 //
-// Each target becomes a recording of east_m and north_m in a local East-North frame whose origin lies in the middle of
-// its area. The truth is the recorded position itself and its velocity_truth(), which does not reach across a gap.
+// Each target becomes a recording of east_m and north_m, in space with up_m, in a local East-North-Up frame whose origin
+// lies in the middle of its area, on the ellipsoid. The truth is the recorded position itself and its velocity_truth(), which does not reach across a gap.
 #pragma once
 
 #include <filesystem>
@@ -33,6 +34,9 @@ struct GeographicTrackOptions {
   bool recorded_velocity = false;
   /// The first step after a gap of more than that many median periods has no truth either.
   double max_gap_periods = std::numeric_limits<double>::infinity();
+  /// Heights count: measured are three coordinates, and a row without an altitude is missing. In the plane they do not,
+  /// and every position is taken as one on the ellipsoid.
+  bool in_space = false;
 };
 
 /// Fewer usable rows than this are no track.
@@ -42,6 +46,7 @@ struct GeographicTracks {
   /// One per target, in the order of their first rows.
   std::vector<Recording> recordings;
   std::vector<std::string> names;  ///< of these targets as the file has them; empty where it does not tell them apart
+  bool has_altitude = false;       ///< has the file such a column?
   int left_out = 0;                ///< targets with fewer than kFewestRows usable rows
   std::size_t late = 0;            ///< rows put in order
   std::size_t not_available = 0;   ///< positions and velocities by which AIS says that there is none

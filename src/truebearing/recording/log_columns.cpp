@@ -46,6 +46,8 @@ std::string_view to_string(ColumnRole role) {
       return "tells targets apart";
     case ColumnRole::position:
       return "position on the globe";
+    case ColumnRole::altitude:
+      return "height, to studies in space alone:";
     case ColumnRole::velocity:
       return "reported velocity";
     case ColumnRole::left_out:

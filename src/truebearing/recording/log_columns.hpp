@@ -18,7 +18,20 @@
 
 namespace truebearing {
 
-enum class ColumnRole { left_out, time, measured, sigma, sensor, source, guess, truth, target, position, velocity };
+enum class ColumnRole {
+  left_out,
+  time,
+  measured,
+  sigma,
+  sensor,
+  source,
+  guess,
+  truth,
+  target,
+  position,
+  altitude,
+  velocity
+};
 
 /// "own ship", "standard deviation", ...
 std::string_view to_string(ColumnRole role);

@@ -3,15 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
+#include <string>
 #include <utility>
 
 #include "truebearing/core/angle.hpp"
 #include "truebearing/core/error.hpp"
 #include "truebearing/core/suggestion.hpp"
+#include "truebearing/measurement/range_bearing_elevation.hpp"
 
 namespace truebearing {
 
 Measured RecordedSensor::measured() const {
+  if (in_space) return output == Output::range_bearing ? RangeBearingElevation<>::measured() : Measured::position(3);
   return output == Output::range_bearing ? Measured::range_bearing() : Measured::position(2);
 }
 
@@ -44,6 +48,13 @@ double exact(const std::string& name, const StateSpace& space, const BoundedVect
   Eigen::Vector2d line_of_sight_m = x.head<2>();
   if (measurement.sensor) line_of_sight_m -= measurement.sensor->position_m;
   return name == "range_m" ? line_of_sight_m.norm() : std::atan2(line_of_sight_m.x(), line_of_sight_m.y());
+}
+
+// Range and bearing of a place in the plane; of one in space with its elevation.
+BoundedVector seen_from_origin(const BoundedVector& place_m) {
+  if (place_m.size() == 2) return Eigen::Vector2d(place_m.norm(), std::atan2(place_m[0], place_m[1]));
+  const SightInSpace<double> sight(Eigen::Vector3d{place_m});
+  return Eigen::Vector3d(sight.range_m, sight.bearing_rad, sight.elevation_rad);
 }
 
 }  // namespace
@@ -101,18 +112,22 @@ RecordedScenario::RecordedScenario(std::vector<Recording> positions, const Recor
   if (positions.empty()) throw InputError("recording", "has no track", "at least one");
   const bool range_bearing = sensor.output == RecordedSensor::Output::range_bearing;
   if (range_bearing) bearing_ = 1;
-  BoundedVector sigma = BoundedVector::Constant(2, sensor.sigma_m);
-  if (range_bearing) sigma[1] = sensor.bearing_sigma_rad;
+  const StateSpace& space = sensor.in_space ? space_space() : plane_space();
+  const int d = space.size() / 2;
+  const Eigen::Vector3d sigmas(sensor.sigma_m, range_bearing ? sensor.bearing_sigma_rad : sensor.sigma_m,
+                               range_bearing ? sensor.elevation_sigma_rad : sensor.sigma_m);
+  const Eigen::Vector3d site(sensor.site_m.x(), sensor.site_m.y(), sensor.site_up_m);
+  const BoundedVector sigma = sigmas.head(d), site_m = site.head(d);
   for (Recording& recording : positions) {
-    if (recording.truth_space != &plane_space() || recording.truth.size() != 1 ||
-        recording.measured != Measured::position(2).components)
-      throw InputError("recording", "holds no positions in the plane", "east_m and north_m with their truth");
+    if (recording.truth_space != &space || recording.truth.size() != 1 ||
+        recording.measured != Measured::position(d).components)
+      throw InputError("recording", d == 3 ? "holds no positions in space" : "holds no positions in the plane",
+                       fmt::format("{} with their truth", fmt::join(Measured::position(d).components, ", ")));
     recording.measured = sensor.measured().components;
-    for (BoundedVector& x : recording.truth[0].x) x.head<2>() -= sensor.site_m;
+    for (BoundedVector& x : recording.truth[0].x) x.head(d) -= site_m;
     for (Measurement& measurement : recording.measurements) {
-      const Eigen::Vector2d position_m = measurement.z - sensor.site_m;
-      measurement.z = position_m;
-      if (range_bearing) measurement.z << position_m.norm(), std::atan2(position_m.x(), position_m.y());
+      measurement.z -= site_m;
+      if (range_bearing) measurement.z = seen_from_origin(measurement.z);
       if (sensor.reported) measurement.sigma = sigma;
     }
     const std::size_t steps = recording.measurements.size();

@@ -14,8 +14,8 @@
 
 namespace truebearing {
 
-/// The sensor that recorded positions in the plane are measured with. It stands at the origin: `site_m` of the
-/// recording's frame becomes the origin of the scenario's.
+/// The sensor that recorded positions are measured with. It stands at the origin: `site_m` of the recording's frame
+/// becomes the origin of the scenario's.
 struct RecordedSensor {
   enum class Output { position, range_bearing };
 
@@ -23,6 +23,9 @@ struct RecordedSensor {
   double sigma_m = 1.0;            ///< of the position per axis, or of the range
   double bearing_sigma_rad = 0.0;  ///< of range_bearing
   Eigen::Vector2d site_m = Eigen::Vector2d::Zero();
+  bool in_space = false;  ///< are heights measured too: up, or by range, bearing and elevation?
+  double elevation_sigma_rad = 0.0;
+  double site_up_m = 0.0;
   bool reported = false;  ///< does a measurement carry its standard deviations?
 
   Measured measured() const;
@@ -35,7 +38,7 @@ class RecordedScenario final : public Scenario {
   /// a measured column does not follow from it, or a sigma is missing.
   explicit RecordedScenario(Recording recorded, std::optional<double> sigma = std::nullopt);
 
-  /// Recorded positions (measured east_m, north_m, truth in plane_space()), taken as exact and measured by the sensor,
+  /// Recorded positions (measured east_m, north_m, truth in plane_space(); or with up_m, in space_space()), taken as exact and measured by the sensor,
   /// also at steps that have no truth to be scored against. Throws InputError for other recordings or none.
   RecordedScenario(std::vector<Recording> positions, const RecordedSensor& sensor);
 

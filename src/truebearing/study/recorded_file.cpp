@@ -76,8 +76,11 @@ RecordedSpec read_recorded_spec(TableReader table) {
     spec.sensor.output = RecordedSensor::Output::range_bearing;
     spec.sensor.sigma_m = table.number("range_sigma_m", kPositive);
     spec.sensor.bearing_sigma_rad = radians(table.number("bearing_sigma_deg", {0.0, 90.0, true}));
-    const std::vector<double> site_m = table.numbers("site", 2);
+    const bool looks_up = table.has("elevation_sigma_deg");
+    if (looks_up) spec.sensor.elevation_sigma_rad = radians(table.number("elevation_sigma_deg", {0.0, 90.0, true}));
+    const std::vector<double> site_m = table.numbers("site", looks_up ? 3 : 2);
     spec.sensor.site_m << site_m[0], site_m[1];
+    if (looks_up) spec.sensor.site_up_m = site_m[2];
   } else {
     spec.sensor.sigma_m = table.number("position_sigma_m", kPositive);
   }
@@ -166,10 +169,20 @@ void RecordedFile::open_positions(CsvReader csv) const {
     throw InputError(name, "holds positions, and the study does not say how they are measured",
                      "a table [recorded] with position_sigma_m in " + study_.string());
   RecordedSensor sensor = spec_->sensor;
+  GeographicTrackOptions track = spec_->track;
+  track.in_space = sensor.in_space = trained_on_.truth_space() == space_space();
+  const bool looks_up = sensor.elevation_sigma_rad > 0.0;
+  if (sensor.output == RecordedSensor::Output::range_bearing && looks_up != sensor.in_space)
+    throw InputError(
+        study_.string() + ": recorded",
+        looks_up ? "tells an elevation, and the study is in the plane"
+                 : "tells no elevation, and the study is in space",
+        looks_up ? "no elevation_sigma_deg" : "elevation_sigma_deg beside range_sigma_m, and site = [East, North, up]");
   check_measured(sensor.measured().components, trained_on_, name);
   sensor.reported = trained_on_.reports_sigma();
-  GeographicTracks tracks = read_geographic_tracks(std::move(csv), spec_->track, options_);
+  GeographicTracks tracks = read_geographic_tracks(std::move(csv), track, options_);
   note_ = note_of(name, tracks);
+  if (tracks.has_altitude && !track.in_space) note_ += ", altitudes not used in the plane";
   if (const std::string unscored = unscored_note(tracks, spec_->track); !unscored.empty())
     note_ += fmt::format("\n{}: {}", name, unscored);
   scenario_ = std::make_unique<RecordedScenario>(std::move(tracks.recordings), sensor);

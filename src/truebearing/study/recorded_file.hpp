@@ -5,6 +5,7 @@
 // afresh as the study's table [recorded] says:
 //   position_sigma_m                             of a sensor that measures the position per axis; or
 //   range_sigma_m, bearing_sigma_deg, site       of one that stands `site` = [East, North] m from the track's middle
+//   elevation_sigma_deg                          with these in space, where `site` is [East, North, up]
 //   max_speed_mps, min_speed_mps, max_gap_periods  what of the track is believed and scored; optional
 #pragma once
 

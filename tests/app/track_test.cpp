@@ -327,6 +327,14 @@ TEST(Track, LateRowsAreTakenWhereTheyBelong) {
     return text.substr(text.rfind('\n', text.size() - 2) + 1);
   };
   EXPECT_THAT(folder.read("late_steps.csv"), HasSubstr(",revised,"));
+  // Read back, the last revision of each time counts.
+  const StepLog read_late = read_step_log(folder.path() / "late_steps.csv"),
+                read_sorted = read_step_log(folder.path() / "sorted_steps.csv");
+  ASSERT_EQ(read_late.records.size(), read_sorted.records.size());
+  for (std::size_t k = 0; k < read_sorted.records.size(); ++k) {
+    EXPECT_EQ(read_late.records[k].time_s, read_sorted.records[k].time_s);
+    EXPECT_EQ(read_late.records[k].x, read_sorted.records[k].x);
+  }
   EXPECT_EQ(replaced(last_line("late_steps.csv"), "6,plain,0,ok,0,", "6,plain,0,ok,"), last_line("sorted_steps.csv"));
   const Outcome too_late = run(folder, "track line.toml late.csv --late 1");
   EXPECT_THAT(too_late.err,

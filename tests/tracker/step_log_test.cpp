@@ -238,6 +238,42 @@ TEST(StepLog, RowsCanBePutInTheOrderOfTheirTimes) {
   EXPECT_EQ(log.records[2].track, 1);
 }
 
+// What `track --late` writes: 2.5 comes late, then 1.5, and what stands after each is written again, by both trackers.
+TEST(StepLog, OfRevisedRowsTheLastIsRead) {
+  const std::string text =
+      "time_s,tracker,track,revised,x_position_m,P_1_1,z_1,nu_1,S_1_1,truth_position_m,sensor\n"
+      "1,a,0,0,10,1,10,0,1,5,s\n1,b,0,0,11,1,11,0,1,5,s\n"
+      "2,a,0,0,20,1,20,0,1,6,t\n2,b,0,0,21,1,21,0,1,6,t\n"
+      "3,a,0,0,30,1,30,0,1,7,s\n3,b,0,0,31,1,31,0,1,7,s\n"
+      "2.5,a,0,0,25,1,25,0,1,8,t\n2.5,b,0,0,26,1,26,0,1,8,t\n"
+      "3,a,0,1,32,1,30,0,1,7,s\n3,b,0,1,33,1,31,0,1,7,s\n"
+      "1.5,a,0,0,15,1,15,0,1,9,s\n1.5,b,0,0,16,1,16,0,1,9,s\n"
+      "2,a,0,1,22,1,20,0,1,6,t\n2,b,0,1,23,1,21,0,1,6,t\n"
+      "2.5,a,0,1,27,1,25,0,1,8,t\n2.5,b,0,1,28,1,26,0,1,8,t\n"
+      "3,a,0,1,34,1,30,0,1,7,s\n3,b,0,1,35,1,31,0,1,7,s\n"
+      "4,a,0,0,40,1,40,0,1,9,s\n";
+  std::istringstream stream(text);
+  const StepLog a = read_step_log(stream, "log.csv", "a");
+  ASSERT_EQ(a.records.size(), 6u);
+  const std::vector<double> times_s{1, 1.5, 2, 2.5, 3, 4}, x_m{10, 15, 22, 27, 34, 40}, truth_m{5, 9, 6, 8, 7, 9};
+  for (std::size_t k = 0; k < 6; ++k) {
+    EXPECT_EQ(a.records[k].time_s, times_s[k]);
+    EXPECT_EQ(a.records[k].x[0], x_m[k]);
+    EXPECT_EQ(a.truth[k][0], truth_m[k]);
+    EXPECT_EQ(a.records[k].source, k == 2 || k == 3) << k;
+  }
+  EXPECT_EQ(a.z.size(), 6u);
+  EXPECT_EQ(parse(text).records.size(), 11u) << "of both";
+  // A late row that a tracker has no record of is followed by revised ones all the same.
+  const std::string header = "time_s,track,revised,x_position_m,P_1_1\n";
+  const StepLog silent = parse(header + "1,0,0,10,1\n2,0,0,20,1\n2,0,0,21,1\n2,0,1,22,1\n2,0,1,23,1\n");
+  ASSERT_EQ(silent.records.size(), 3u);
+  EXPECT_EQ(silent.records[1].x[0], 22.0);
+  EXPECT_EQ(silent.records[2].x[0], 23.0) << "two measurements of one time";
+  EXPECT_THAT(error_of("time_s,track,x_position_m,P_1_1\n2,0,10,1\n1,0,10,1\n"), HasSubstr("do not decrease"));
+  EXPECT_THAT(error_of(header + "2,0,0,10,1\nnan,0,0,10,1\n"), HasSubstr("do not decrease"));
+}
+
 TEST(StepLog, RowsCanBeTakenAsTheyCome) {
   StepLogWriter whole(line_space(), 1), pieces(line_space(), 1);
   std::string text;

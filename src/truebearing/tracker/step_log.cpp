@@ -111,6 +111,21 @@ std::vector<std::string> log_header(const StateSpace& space, const StepLogWriter
   return header;
 }
 
+// Forgets the rows that one at time_s stands in place of: those after it, and where it is revised those of its time. A
+// late row is followed by all that come after it once more.
+void take_back(double time_s, bool revised, StepLog& log, std::vector<std::string>& sensors) {
+  const auto end = log.records.end();
+  const auto first = revised ? std::lower_bound(log.records.begin(), end, time_s,
+                                                [](const StepRecord& record, double t) { return record.time_s < t; })
+                             : std::upper_bound(log.records.begin(), end, time_s,
+                                                [](double t, const StepRecord& record) { return t < record.time_s; });
+  const auto kept = static_cast<std::size_t>(first - log.records.begin());
+  log.records.erase(first, end);
+  log.z.resize(kept);
+  log.truth.resize(kept);
+  sensors.resize(std::min(sensors.size(), kept));
+}
+
 StepLog read_rows(CsvReader& csv, const std::string& tracker) {
   const std::size_t time = csv.required_column("time_s");
   const std::size_t track = csv.required_column("track");
@@ -130,7 +145,8 @@ StepLog read_rows(CsvReader& csv, const std::string& tracker) {
   const std::vector<int> z_columns = vector_columns(csv, "z");
   const std::vector<int> nu_columns = vector_columns(csv, "nu");
   const std::vector<int> S_columns = triangle_columns(csv, "S", nu_columns.size());
-  const int status_column = csv.column("status"), sensor_column = csv.column("sensor");
+  const int status_column = csv.column("status"), sensor_column = csv.column("sensor"),
+            revised_column = csv.column("revised");
   std::vector<std::string> sensors;  // of each record
   log.has_innovation = !nu_columns.empty() && z_columns.size() == nu_columns.size() && !S_columns.empty();
   if (z_columns.size() > kMaxDimension)
@@ -142,11 +158,20 @@ StepLog read_rows(CsvReader& csv, const std::string& tracker) {
                      fmt::format("at most {}", kMaxDimension));
 
   double last_time_s = -std::numeric_limits<double>::infinity();
+  bool was_revised = false;
   while (csv.next()) {
     if (!tracker.empty() && csv.text(static_cast<std::size_t>(tracker_column)) != tracker) continue;
     StepRecord record;
     record.space = log.space;
     record.time_s = csv.number(time);
+    if (revised_column >= 0) {
+      const bool revised = csv.number(static_cast<std::size_t>(revised_column)) == 1.0;
+      if (record.time_s < last_time_s || (revised && !was_revised)) {
+        take_back(record.time_s, revised, log, sensors);
+        last_time_s = record.time_s;
+      }
+      was_revised = revised;
+    }
     if (!(record.time_s >= last_time_s))
       throw csv.error(time, fmt::format("{} after {}", record.time_s, last_time_s), "times that do not decrease");
     last_time_s = record.time_s;

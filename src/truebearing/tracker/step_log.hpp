@@ -2,7 +2,9 @@
 // The step log: what trackers did, as CSV. It is what `truebearing track -o` writes, and how a tracker that runs
 // elsewhere (an existing system, MATLAB, Stone Soup) joins the house. Columns: `time_s`, `track`, `x_<component>`,
 // `P_<i>_<j>` (upper triangle, from 1), and where they exist `tracker`, `status`, `sensor`, `z_<i>`, `nu_<i>`, `S_<i>_<j>`,
-// `truth_<component>`. Of sensors that measure less than others the last cells of z, nu and S are empty.
+// `truth_<component>`. Of sensors that measure less than others the last cells of z, nu and S are empty. In a log with a
+// column `revised` a row earlier than the one before it is a late one, after which those of later times follow once more,
+// with 1 in that column: what stood there of these times is forgotten, so that of each the last revision is read.
 #pragma once
 
 #include <filesystem>
@@ -17,7 +19,7 @@ namespace truebearing {
 
 struct StepLog {
   const StateSpace* space = nullptr;
-  std::vector<StepRecord> records;  ///< in the order of the file, times not decreasing
+  std::vector<StepRecord> records;  ///< in the order of the file, times not decreasing; of revised rows the last
   bool has_innovation = false;
   /// By record, NaN where a cell is empty: the measurement (no components where the log has no columns z), and the
   /// truth of these components (none where it has no columns truth_).

@@ -19,12 +19,12 @@
 #include "app/report_output.hpp"
 #include "app/subcommands.hpp"
 #include "app/terminal.hpp"
+#include "app/track_foretelling.hpp"
 #include "app/track_output.hpp"
 #include "app/track_report.hpp"
 #include "app/track_run.hpp"
 #include "truebearing/array/recorded_array.hpp"
 #include "truebearing/core/constants.hpp"
-#include "truebearing/evaluation/foretelling.hpp"
 #include "truebearing/evaluation/report.hpp"
 #include "truebearing/evaluation/time_steps.hpp"
 #include "truebearing/io/csv.hpp"
@@ -63,9 +63,6 @@ struct TrackArguments {
   }
   std::vector<std::string> outputs() const { return {output, json, events, report.page}; }
 };
-
-// Logs that are kept, each with the number that tells its tracks from others'.
-using KeptLogs = std::vector<std::pair<int, Recording>>;
 
 // The log's own measurements as the runs of a comparison, one per track.
 class LogScenario final : public Scenario {
@@ -140,29 +137,31 @@ void say_epoch(const TrackArguments& options, double epoch_s) {
 
 // What can be said of logs without truth. numbers: of their tracks.
 void write_log_results(const Study& study, const TrackArguments& options, const TrackRun& run,
-                       const Recording::Counts& rows, const KeptLogs& logs) {
-  LogFollower follower(run.trackers());
+                       const Recording::Counts& rows, const KeptLogs& logs, const std::vector<ForetoldLog>& foretold) {
+  LogFollower follower(run.trackers(), sensor_sites(study));
   for (const auto& [number, recording] : logs) follower.follow(recording, number, run.contents().epoch_s);
   TrackedLog tracked{study.name(), options.log, run.contents().measurements, rows, {}, follower.take()};
   for (const Followed& followed : run.all())
     tracked.why_none.push_back(followed.records > 0 ? "" : why_no_track(study, followed.name, run.contents()));
-  const std::string json = log_json(tracked, run.all());
+  const std::string json = with_foretelling(log_json(tracked, run.all()), foretold);
   if (!options.json.empty()) write_output(options.json, json);
   if (!options.report.page.empty()) write_output(options.report.page, log_page(json, options.log));
   if (!options.report.svg.empty()) write_plots(options.report.svg, log_plot_files(json, options.log));
 }
 
-// Of each log, in the trackers' time.
-void say_who_foretells(const TrackArguments& options, const TrackRun& run, const KeptLogs& logs) {
-  for (const auto& [number, recording] : logs) {
-    Recording timed = recording;
-    for (Measurement& measurement : timed.measurements) measurement.time_s -= run.contents().epoch_s;
-    const std::string text = foretelling_text(foretell(run.trackers(), timed, options.foretold));
+std::vector<ForetoldLog> who_foretells(const Study& study, const TrackArguments& options, const TrackRun& run,
+                                       const KeptLogs& logs) {
+  if (options.foretold == 0) return {};
+  std::vector<ForetoldLog> all =
+      foretell(run.trackers(), logs, run.contents().epoch_s, options.foretold, sensor_sites(study));
+  for (const ForetoldLog& log : all) {
+    const std::string text = foretelling_text(log.told);
     if (options.only_text_for_programs())
       say(text);
     else
       fmt::print("\n{}", text);
   }
+  return all;
 }
 
 // logs: what is to be scored, or told of where it has no truth; empty where neither is wanted.
@@ -178,14 +177,14 @@ void finish(const Study& study, const TrackArguments& options, TrackRun& run, co
   std::optional<Scored> scored;
   if (!tracks.empty()) scored = score(study, options, run.trackers(), tracks, run.contents().epoch_s);
   run.finish();
-  if (options.foretold > 0) say_who_foretells(options, run, foretold);
+  const std::vector<ForetoldLog> told = who_foretells(study, options, run, foretold);
   if (!scored) {
-    if (options.wants_results()) write_log_results(study, options, run, rows, logs);
+    if (options.wants_results()) write_log_results(study, options, run, rows, logs, told);
     return;
   }
   if (for_people) fmt::print("\n{}", comparison_table(scored->comparison, TableArguments{}.layout()));
   if (!options.wants_results()) return;
-  const std::string json = comparison_json(scored->comparison, scored->pictures);
+  const std::string json = with_foretelling(comparison_json(scored->comparison, scored->pictures), told);
   if (!options.json.empty()) write_output(options.json, json);
   if (options.report.wanted()) write_report(options.report, {parse_results(json, options.log)});
 }
@@ -202,7 +201,8 @@ void track_step_log(const Study& study, const StepLogScenario& logs, const Track
     for (const Measurement& measurement : recording.measurements) run.step(measurement);
     run.end_track(recording.counts);
     rows.missing += recording.counts.missing;
-    if (recording.truth_space || options.wants_results()) logs_kept.emplace_back(number, std::move(recording));
+    if (recording.truth_space || options.wants_results() || options.foretold > 0)
+      logs_kept.emplace_back(number, std::move(recording));
   }
   finish(study, options, run, rows, std::move(logs_kept));
 }
@@ -221,7 +221,8 @@ void track_snapshots(const Study& study, const TrackArguments& options) {
   run.end_track(rows);
   print_note(options.log, array.note());
   KeptLogs logs;
-  if (recording.truth_space || options.wants_results()) logs.emplace_back(0, std::move(recording));
+  if (recording.truth_space || options.wants_results() || options.foretold > 0)
+    logs.emplace_back(0, std::move(recording));
   finish(study, options, run, rows, std::move(logs));
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -309,6 +310,40 @@ TEST(Track, SeveralSensorsWriteOneLog) {
   EXPECT_EQ(steps.records.back().source, 1);
   folder.write("bad.csv", "time_s,east_m,north_m,range_m,bearing_deg\n0,3000,4000,5000,\n");
   EXPECT_THAT(run(folder, "track two.toml bad.csv").err, HasSubstr("a row for each sensor"));
+}
+
+// Measurements of a target at 100 m/s with and without its truth: what is foretold stands in the JSON and on the page.
+TEST(Track, WhoForetellsBestIsInTheResultsAndOnThePage) {
+  const TemporaryFolder folder;
+  folder.write("line.toml", kLineStudy +
+                                "[trackers.loose]\nlike = \"plain\"\n"
+                                "motion = { sigma_a_mps2 = 500.0 }\n");
+  std::string log = "time_s,position_m\n", with_truth = "time_s,position_m,truth_position_m,truth_velocity_mps\n";
+  for (int k = 0; k < 100; ++k) {
+    const double noise_m = 60.0 * std::sin(12.9898 * k) + 40.0 * std::sin(78.233 * k + 1.0);
+    log += fmt::format("{},{}\n", k, 100.0 * k + noise_m);
+    with_truth += fmt::format("{},{},{},100\n", k, 100.0 * k + noise_m, 100.0 * k);
+  }
+  folder.write("log.csv", log);
+  folder.write("truth.csv", with_truth);
+  for (const char* name : {"log", "truth"}) {
+    const Outcome outcome =
+        run(folder, fmt::format("track line.toml {0}.csv --foretell 2 --json {0}.json --report {0}.html", name));
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const nlohmann::json told = nlohmann::json::parse(folder.read(std::string(name) + ".json"))["foretelling"][0];
+    EXPECT_EQ(told["best"], "plain");
+    EXPECT_EQ(told["steps"], 2);
+    EXPECT_EQ(told["quantity"], "position_m");
+    EXPECT_LT(told["trackers"]["plain"]["rmse"], told["trackers"]["loose"]["rmse"]);
+    EXPECT_GT(told["trackers"]["loose"]["squared_above_best"],
+              3.0 * told["trackers"]["loose"]["squared_above_best_se"].get<double>());
+    EXPECT_EQ(told["trackers"]["plain"]["squared_above_best"], 0.0);
+    EXPECT_THAT(outcome.out, HasSubstr(told["says"].get<std::string>()));
+    EXPECT_THAT(folder.read(std::string(name) + ".html"),
+                AllOf(HasSubstr("Who foretells best"), HasSubstr(told["says"].get<std::string>())));
+  }
+  ASSERT_EQ(run(folder, "track line.toml log.csv --json without.json").status, 0);
+  EXPECT_THAT(folder.read("without.json"), Not(HasSubstr("foretelling")));
 }
 
 TEST(Track, LateRowsAreTakenWhereTheyBelong) {

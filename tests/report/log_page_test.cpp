@@ -93,6 +93,45 @@ TEST(LogPage, ShowsTracksInnovationsEventsAndWhatWasNotUsed) {
   EXPECT_THAT(page, HasSubstr("<td>1</td><td>0.35 to 2</td><td>consistent</td><td>−0.5</td><td>−0.6 to 0.6</td>"));
 }
 
+TEST(LogPage, SaysWhoForetellsBest) {
+  EXPECT_THAT(log_page(log_of().dump(), "a.json"), Not(HasSubstr("Who foretells best"))) << "nothing was foretold";
+  Json json = log_of();
+  const Json best{
+      {"rmse", 40.5}, {"rmse_se", 1.25}, {"squared_above_best", 0}, {"squared_above_best_se", 0}, {"mean_gate", 0.01}},
+      other{{"rmse", 50.0},
+            {"rmse_se", 2.0},
+            {"squared_above_best", 860.0},
+            {"squared_above_best_se", 215.0},
+            {"mean_gate", nullptr}};
+  json["foretelling"] = Json::array({{{"track", 4},
+                                      {"steps", 3},
+                                      {"quantity", "position_m"},
+                                      {"measurements", 66},
+                                      {"best", "tuned"},
+                                      {"says", "tuned <foretells> best"},
+                                      {"trackers", {{"tuned", best}, {"plain", other}}},
+                                      {"left_out", {"raw"}}}});
+  const std::string page = log_page(json.dump(), "a.json");
+  EXPECT_EQ(read_markup(page).error, "");
+  const std::string told = between(page, "<h2>Who foretells best</h2>", "<h2>");
+  EXPECT_THAT(told, HasSubstr("<p>tuned &lt;foretells&gt; best.</p>"));
+  EXPECT_THAT(
+      told, HasSubstr("<th scope=\"col\">position RMSE (m)</th><th scope=\"col\">squared, above the best (m^2)</th>"));
+  EXPECT_THAT(told,
+              HasSubstr("tuned<span class=\"tag\">best</span></th><td>40.5 <span class=\"se\">± 1.2</span></td>"));
+  EXPECT_THAT(told, HasSubstr("<td>860 <span class=\"se\">± 220</span></td><td>4</td>"));
+  EXPECT_THAT(told, HasSubstr("66 measurements, each 3 of the trackers' steps ahead"));
+  EXPECT_THAT(told, HasSubstr("raw has no estimate where measurements are hidden."));
+  EXPECT_THAT(told, HasSubstr("tuned: its gate is shut"));
+  EXPECT_EQ(count_of(told, "its gate is shut"), 1) << "the other is no correction";
+  EXPECT_EQ(count_of(told, "<h3>"), 0) << "of the one track";
+  json["foretelling"].push_back(json["foretelling"][0]);
+  EXPECT_EQ(count_of(log_page(json.dump(), "a.json"), "<h3>Track 4</h3>"), 2);
+  json["foretelling"][0]["trackers"]["plain"].erase("rmse");
+  EXPECT_THAT(error_message([&] { log_page(json.dump(), "a.json"); }),
+              HasSubstr("a.json: foretelling[0].trackers.plain: has no \"rmse\""));
+}
+
 TEST(LogPage, SaysWhoIsConsistentByItsNis) {
   EXPECT_EQ(log_answer(parse_log_results(log_of().dump(), "a.json")),
             "Innovations as large as claimed: tuned. Larger than claimed: plain.");

@@ -59,6 +59,28 @@ TEST(Page, FiguresAreThoseOfTheResults) {
   EXPECT_THAT(page, HasSubstr("<td>70</td>")) << "per cent of the way from tuned to the bound";
 }
 
+TEST(Page, SaysWhoForetoldALogBest) {
+  ResultJson json = results_json();
+  EXPECT_EQ(count_of(report_page({read(json)}), "Who foretells best"), 0);
+  json["foretelling"] = {{{"track", 0},
+                          {"steps", 1},
+                          {"quantity", "bearing_deg"},
+                          {"measurements", 20},
+                          {"best", "tuned"},
+                          {"says", ""},
+                          {"trackers",
+                           {{"tuned",
+                             {{"rmse", 0.5},
+                              {"rmse_se", 0.1},
+                              {"squared_above_best", 0},
+                              {"squared_above_best_se", 0},
+                              {"mean_gate", nullptr}}}}},
+                          {"left_out", ResultJson::array()}}};
+  const std::string page = report_page({read(json)});
+  EXPECT_EQ(read_markup(page).error, "");
+  EXPECT_THAT(between(page, "<h2>Who foretells best</h2>", "<h2>"), HasSubstr("20 measurements"));
+}
+
 TEST(Page, SaysWhatOthersPublishedAndWhere) {
   ResultJson json = results_json();
   EXPECT_EQ(count_of(report_page({read(json)}), "ublished"), 0);

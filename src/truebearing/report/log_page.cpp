@@ -203,7 +203,7 @@ std::string log_page(std::string_view text, const std::string& file) {
       shown(results.repeated, 9), escaped(log_answer(results)));
   for (const std::string& warning : results.warnings)
     body += fmt::format("<p class=\"note\">{}</p>\n", escaped(warning));
-  body += consistency_of(results);
+  body += consistency_of(results) + foretelling_section(results.foretelling);
   std::vector<Plot> plots = log_plots(results), first, rest;
   for (Plot& plot : plots) (plot.id == "tracks" ? first : rest).push_back(std::move(plot));
   body += section("Tracks", first) + last_estimates(results) + events_of(results) + not_used_of(results) +

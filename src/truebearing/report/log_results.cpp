@@ -67,6 +67,7 @@ LogResults parse_log_results(std::string_view text, const std::string& file) {
   for (const ResultReader& event : json.at("events").items())
     results.events.push_back({event.at("tracker").text(), event.at("event").text(), event.at("time_s").number(),
                               event.at("value").number()});
+  results.foretelling = read_foretelling(json);
   results.picture = read_picture(json.at("picture"));
   return results;
 }

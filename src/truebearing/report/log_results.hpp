@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "truebearing/report/foretelling_results.hpp"
 #include "truebearing/report/results.hpp"
 
 namespace truebearing {
@@ -47,6 +48,7 @@ struct LogResults {
   std::vector<std::string> warnings;
   std::vector<LogTracker> trackers;
   std::vector<LogEvent> events;
+  std::vector<ForetellingResults> foretelling;
   ResultPicture picture;
 };
 

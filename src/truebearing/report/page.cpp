@@ -63,6 +63,7 @@ std::string results_section(const Results& results, const std::string& id, bool 
   text += "<p class=\"note\">± is the standard error over runs. Best: the least RMSE among what is no bound.</p>\n";
   text += published_table(results.all) + paired_table(results.all, true);
   text += folded("Further figures", paired_table(results.all, false) + metric_table(results.all));
+  text += foretelling_section(results.foretelling);
   // Steps of several sets do not lie at the same times.
   text += results.sets.empty() ? figures_sections(results.all, id) : section("Run by run", run_plots(results.all, id));
   text += section("Runs as they happened", picture_plots(results, id));

@@ -282,6 +282,7 @@ Results parse_results(std::string_view text, const std::string& file) {
   if (results.all.trackers.empty()) throw json.error("holds no tracker");
   if (json.has("sets"))
     for (const auto& [name, set] : json.at("sets").entries()) results.sets.push_back({name, read_figures(set)});
+  results.foretelling = read_foretelling(json);
   if (json.has("pictures"))
     for (const ResultReader& picture : json.at("pictures").items()) results.pictures.push_back(read_picture(picture));
   return results;

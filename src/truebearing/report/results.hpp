@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "truebearing/core/constants.hpp"
+#include "truebearing/report/foretelling_results.hpp"
 
 namespace truebearing {
 
@@ -124,6 +125,7 @@ struct Results {
   };
   std::vector<Set> sets;
   std::vector<ResultPicture> pictures;
+  std::vector<ForetellingResults> foretelling;  ///< of a log that `track --foretell` scored
 };
 
 class ResultReader;

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who of the trackers on a log foretells best (evaluation/foretelling.hpp), log by log: `truebearing track --foretell`.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "truebearing/evaluation/foretelling.hpp"
+#include "truebearing/recording/recording.hpp"
+
+namespace truebearing {
+
+/// Logs that are kept, each with the number that tells its tracks from others'.
+using KeptLogs = std::vector<std::pair<int, Recording>>;
+
+struct ForetoldLog {
+  int number;
+  Foretelling told;
+};
+
+/// Of each log, in the trackers' time, which begins at epoch_s of the log's. Throws InputError as foretell() does.
+std::vector<ForetoldLog> foretell(const TrackerSet& trackers, const KeptLogs& logs, double epoch_s, int steps,
+                                  const SensorSites& sites);
+
+/// The results, which are JSON, with a key `foretelling`; as they are where nothing was foretold.
+std::string with_foretelling(std::string results, const std::vector<ForetoldLog>& all);
+
+}  // namespace truebearing

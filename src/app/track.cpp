@@ -250,7 +250,7 @@ void track_rows(const Study& study, const TrackArguments& options) {
     reading.sort_window_s = std::max(reading.sort_window_s, reading.late_keep_s);
     reading.late_keep_s = 0.0;
   }
-  MeasurementLog reader(with_names(CsvReader(std::filesystem::path(options.log)), reading), reading);
+  MeasurementLog reader(open_table(options.log, reading), reading);
   check_measured(reader.measured(), study.scenario(), options.log);
   // Whoever is only given the records needs no scores, and the log has no end that could be waited for.
   const bool keeps =

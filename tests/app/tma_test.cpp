@@ -54,6 +54,32 @@ TEST(TmaCommand, SaysRangeCourseAndSpeedWithTheirSpread) {
   EXPECT_EQ(answer["solver"]["starts"], 3);
 }
 
+// The target of tests/recording/logs/passive.rep, whose comment says how it goes: at the last bearing, 2380 s after the
+// beginning, -9505 m East and 4812 m North of own ship's first position, which at the first bearing is 32, 26 m away.
+TEST(TmaCommand, ReadsTheReplayFilesOfDebrief) {
+  const TemporaryFolder folder;
+  const std::string log = TRUEBEARING_SOURCE_DIR "/tests/recording/logs/passive.rep";
+  const Outcome outcome = run(folder, "tma " + log + " --sigma 0.5 --frequency-sigma 0.01 --json -");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json answer = json::parse(outcome.out);
+  EXPECT_TRUE(answer["range_determined"]);
+  const auto expect = [&](const char* key, double truth) {
+    EXPECT_LT(std::abs(answer["estimate"][key].get<double>() - truth),
+              4.0 * answer["standard_deviation"][key].get<double>())
+        << key;
+  };
+  expect("east_m", -9505.4 - 31.5);
+  expect("north_m", 4812.4 - 26.5);
+  expect("range_m", 16917.0);
+  expect("course_deg", 250.0);
+  expect("speed_mps", 10.0 * 1852.0 / 3600.0);
+  EXPECT_LT(answer["standard_deviation"]["range_m"].get<double>(), 200.0);
+  EXPECT_THAT(run(folder, "check " + log).out, AllOf(HasSubstr("80 rows"), HasSubstr("can be used")));
+  const Outcome tracked = run(folder, "track passive_sonar_a " + log);
+  EXPECT_EQ(tracked.status, 0) << tracked.err;
+  EXPECT_THAT(tracked.out, HasSubstr("80 measurements, 0 missing"));
+}
+
 TEST(TmaCommand, SaysPlainlyWhereTheRangeIsNotDetermined) {
   const TemporaryFolder folder;
   folder.write("log.csv", log_until(200.0));  // before own ship's first turn

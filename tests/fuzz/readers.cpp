@@ -4,10 +4,12 @@
 #include <cerrno>
 #include <fcntl.h>
 #include <filesystem>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <system_error>
 #include <unistd.h>
+#include <utility>
 
 #include "tests/fuzz/estimators.hpp"
 #include "tests/fuzz/snapshot_files.hpp"
@@ -16,6 +18,7 @@
 #include "truebearing/correction/model_file.hpp"
 #include "truebearing/io/safetensors.hpp"
 #include "truebearing/io/table_reader.hpp"
+#include "truebearing/recording/debrief_replay.hpp"
 #include "truebearing/recording/geographic_track.hpp"
 #include "truebearing/recording/recording_csv.hpp"
 #include "truebearing/recording/snapshot_log.hpp"
@@ -64,6 +67,11 @@ void read(std::uint8_t reader, const std::string& text) {
     case 'r':
       read_recording(stream, "hostile.csv");
       break;
+    case 'd': {
+      auto table = std::make_unique<std::istringstream>(table_of_debrief_replay(stream, "hostile.rep"));
+      read_recording(CsvReader(std::move(table), "hostile.rep"), {});
+      break;
+    }
     case 'g':
       read_geographic_tracks(stream, "hostile.csv");
       break;

@@ -118,6 +118,11 @@ CsvReader::CsvReader(std::istream& stream, std::string name) : stream_(&stream),
   read_header();
 }
 
+CsvReader::CsvReader(std::unique_ptr<std::istream> table, std::string name)
+    : file_(std::move(table)), stream_(file_.get()), name_(std::move(name)), next_line_(0) {
+  read_header();
+}
+
 InputError CsvReader::line_error(const std::string& found, const std::string& valid) const {
   return {fmt::format("{}:{}", name_, line_), found, valid};
 }

@@ -26,6 +26,8 @@ class CsvReader {
   explicit CsvReader(const std::filesystem::path& path);
   /// The same for a stream that outlives the reader; `name` stands for the file in messages.
   CsvReader(std::istream& stream, std::string name);
+  /// The same for a table that was made of a file of another kind, whose line k became row k: its header is none of them.
+  CsvReader(std::unique_ptr<std::istream> table, std::string name);
 
   const std::vector<std::string>& header() const { return header_; }
   char separator() const { return separator_; }

@@ -259,7 +259,7 @@ bool is_geographic_track(const CsvReader& csv) {
 bool is_geographic_track(const std::filesystem::path& path) {
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(path, unknown)) return false;  // a pipe can be read only once
-  return is_geographic_track(CsvReader(path));
+  return is_geographic_track(open_table(path));
 }
 
 GeographicTracks read_geographic_tracks(CsvReader csv, const GeographicTrackOptions& options,
@@ -298,7 +298,7 @@ GeographicTracks read_geographic_tracks(CsvReader csv, const GeographicTrackOpti
 
 GeographicTracks read_geographic_tracks(const std::filesystem::path& path, const GeographicTrackOptions& options,
                                         const RecordingOptions& recording) {
-  return read_geographic_tracks(with_names(CsvReader(path), recording), options, recording);
+  return read_geographic_tracks(open_table(path, recording), options, recording);
 }
 
 GeographicTracks read_geographic_tracks(std::istream& stream, const std::string& name,

@@ -239,10 +239,9 @@ void read_as_trackers_do(CsvReader csv, const RecordingOptions& options, LogRepo
 }  // namespace
 
 LogReport check_log(const std::filesystem::path& path, const RecordingOptions& options) {
-  LogReport report = LogSurvey(with_names(CsvReader(path), options), options).report();
+  LogReport report = LogSurvey(open_table(path, options), options).report();
   std::error_code unknown;
-  if (std::filesystem::is_regular_file(path, unknown))
-    read_as_trackers_do(with_names(CsvReader(path), options), options, report);
+  if (std::filesystem::is_regular_file(path, unknown)) read_as_trackers_do(open_table(path, options), options, report);
   if (report.rows == 0 && report.faults.empty()) report.faults.push_back(report.log + ": has no rows");
   return report;
 }

@@ -3,12 +3,20 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <fmt/format.h>
+#include <fstream>
+#include <memory>
+#include <sstream>
 #include <string_view>
+#include <system_error>
+#include <utility>
 
 #include "truebearing/core/printable.hpp"
 #include "truebearing/core/suggestion.hpp"
+#include "truebearing/recording/debrief_replay.hpp"
 #include "truebearing/recording/log_units.hpp"
 
 namespace truebearing {
@@ -87,6 +95,16 @@ CsvReader with_names(CsvReader csv, const RecordingOptions& options) {
   }
   if (!renamed.empty()) csv.rename(renamed);
   return csv;
+}
+
+CsvReader open_table(const std::filesystem::path& path, const RecordingOptions& options) {
+  std::error_code unknown;
+  if (!is_debrief_replay(path) || std::filesystem::is_directory(path, unknown))
+    return with_names(CsvReader(path), options);
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(path.string(), fmt::format("cannot be opened: {}", std::strerror(errno)));
+  auto table = std::make_unique<std::istringstream>(table_of_debrief_replay(file, path.string()));
+  return with_names(CsvReader(std::move(table), path.string()), options);
 }
 
 std::optional<LogColumn> find_column(const CsvReader& csv, std::string_view stem, Dimension dimension) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -72,6 +73,9 @@ LogLayout read_log_layout(const CsvReader& csv, const TimeColumn& time, const Re
 /// The file with the names that the options give its columns. Those without one keep theirs and are left out. Throws
 /// InputError where the file has no such column.
 CsvReader with_names(CsvReader csv, const RecordingOptions& options);
+/// The same of a file that is to be opened: CSV, JSON lines, or one of Debrief's as the table that says the same
+/// (debrief_replay.hpp); "-" is standard input. Throws InputError where it cannot be.
+CsvReader open_table(const std::filesystem::path& path, const RecordingOptions& options = {});
 
 /// The column STEM_UNIT in a unit of that dimension, of which a file has one as a rule.
 std::optional<LogColumn> find_column(const CsvReader& csv, std::string_view stem, Dimension dimension);

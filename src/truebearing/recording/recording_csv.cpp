@@ -340,7 +340,7 @@ Recording read_recording(CsvReader csv, const RecordingOptions& options, LogFind
 }
 
 Recording read_recording(const std::filesystem::path& path, const RecordingOptions& options, LogFindings* findings) {
-  return read_recording(with_names(CsvReader(path), options), options, findings);
+  return read_recording(open_table(path, options), options, findings);
 }
 
 Recording read_recording(std::istream& stream, const std::string& name, const RecordingOptions& options,

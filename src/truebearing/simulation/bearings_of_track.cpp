@@ -53,7 +53,7 @@ Recording BearingsOfTrack::simulate(const RunKey& key) const {
 }
 
 Recording read_target_track(const std::filesystem::path& path, const RecordingOptions& options) {
-  CsvReader csv = with_names(CsvReader(path), options);
+  CsvReader csv = open_table(path, options);
   if (!is_geographic_track(csv)) {
     if (!options.target.empty() && !find_target_column(csv, options))
       throw InputError(path.string(), "holds one track", "no --track-id");

@@ -139,7 +139,7 @@ void RecordedFile::open() const {
     scenario_ = std::make_unique<RecordedScenario>(std::move(recording));
     return;
   }
-  CsvReader csv = with_names(CsvReader(file_), options_);
+  CsvReader csv = open_table(file_, options_);
   if (is_geographic_track(csv))
     open_positions(std::move(csv));
   else

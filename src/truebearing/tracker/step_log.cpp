@@ -13,6 +13,7 @@
 
 #include "truebearing/core/covariance.hpp"
 #include "truebearing/core/error.hpp"
+#include "truebearing/recording/debrief_replay.hpp"
 
 namespace truebearing {
 namespace {
@@ -219,7 +220,7 @@ StepLog read_step_log(std::istream& stream, const std::string& name, const std::
 
 bool is_step_log(const std::filesystem::path& path) {
   std::error_code unknown;
-  if (!std::filesystem::is_regular_file(path, unknown)) return false;
+  if (!std::filesystem::is_regular_file(path, unknown) || is_debrief_replay(path)) return false;
   const CsvReader csv(path);
   std::vector<std::string> components;
   component_columns(csv, "x_", components);

@@ -72,6 +72,15 @@ TEST(Foretelling, TheFilterThatSuitsTheTargetForetellsBest) {
   }
 }
 
+// Whatever the stretches' lengths: of 39 errors some have three and some four.
+TEST(Foretelling, DifferencesAreThoseOfTheSquares) {
+  const Foretelling told = foretell(trackers(30.0, 0.1), recording(41), 1);
+  const Foretelling::Tracker &best = told.trackers[told.best], &other = told.trackers[1 - told.best];
+  EXPECT_NEAR(other.above_best.value, std::pow(other.rmse.value, 2.0) - std::pow(best.rmse.value, 2.0), 1e-9);
+  EXPECT_GT(other.above_best.se, 0.0);
+  EXPECT_EQ(best.above_best.value, 0.0);
+}
+
 TEST(Foretelling, EqualTrackersForetellAlike) {
   EXPECT_THAT(foretelling_text(foretell(trackers(1.0, 1.0), recording(), 2)), HasSubstr("no difference can be told"));
 }

@@ -62,12 +62,19 @@ std::vector<SquaredErrors> stretches_of(const std::vector<double>& errors) {
   return stretches;
 }
 
-// Mean of a^2 - b^2, with its standard error over the stretches.
+// Mean of a^2 - b^2. Its standard error is the jackknife, one stretch left out at a time, as that of an RMSE.
 Estimate difference_of(const std::vector<double>& a, const std::vector<double>& b) {
   const std::vector<SquaredErrors> of_a = stretches_of(a), of_b = stretches_of(b);
-  std::vector<double> means;
-  for (std::size_t i = 0; i < of_a.size(); ++i) means.push_back(mean_square(of_a[i]) - mean_square(of_b[i]));
-  return mean_of(means);
+  const auto n = static_cast<double>(a.size()), stretches = static_cast<double>(of_a.size());
+  double sum = 0.0;
+  for (std::size_t i = 0; i < of_a.size(); ++i) sum += of_a[i].sum - of_b[i].sum;
+  double mean = 0.0, squares = 0.0;  // of what is left without one of them
+  for (std::size_t i = 0; i < of_a.size(); ++i) {
+    const double left = (sum - of_a[i].sum + of_b[i].sum) / (n - of_a[i].count), from_mean = left - mean;
+    mean += from_mean / static_cast<double>(i + 1);
+    squares += from_mean * (left - mean);
+  }
+  return {sum / n, std::sqrt((stretches - 1.0) / stretches * squares)};
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ struct Foretelling {
   struct Tracker {
     std::string name;
     Estimate rmse;  ///< of the foretold measurement; standard error by leaving out one of twelve stretches of the log
-    /// Mean squared error less that of the best; 0 of the best itself.
+    /// Mean squared error less that of the best, its standard error likewise; 0 of the best itself.
     Estimate above_best;
     double mean_gate;  ///< of a correction, over the foretold measurements; NaN of what is none
   };

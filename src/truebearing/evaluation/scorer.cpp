@@ -2,30 +2,58 @@
 #include "truebearing/evaluation/scorer.hpp"
 
 #include <algorithm>
+#include <type_traits>
 #include <utility>
 
 #include "truebearing/core/constants.hpp"
 #include "truebearing/core/covariance.hpp"
 #include "truebearing/core/error.hpp"
+#include "truebearing/core/with_count.hpp"
 #include "truebearing/evaluation/run_score.hpp"
 
 namespace truebearing {
-namespace {}  // namespace
+namespace {
+
+// The difference in the N components that stand at `places` of both lists: its 2-norm, and d' P^-1 d.
+struct Distance {
+  double norm = 0.0;
+  double squared_by_P = 0.0;
+};
+
+template <int N>
+Distance distance(const BoundedVector& truth, const StepRecord& record, const int* in_truth, const int* in_estimate) {
+  Eigen::Matrix<double, N, 1> d;
+  Eigen::Matrix<double, N, N> P;
+  for (int j = 0; j < N; ++j) {
+    d[j] = truth[in_truth[j]] - record.x[in_estimate[j]];
+    for (int i = 0; i < N; ++i) P(i, j) = record.P(in_estimate[i], in_estimate[j]);
+  }
+  return {d.norm(), mahalanobis_squared(P, d)};
+}
+
+Distance distance(const BoundedVector& truth, const StepRecord& record, const std::vector<int>& in_truth,
+                  const std::vector<int>& in_estimate) {
+  Distance found;
+  with_count(static_cast<int>(in_truth.size()), [&]<int N>(std::integral_constant<int, N>) {
+    if constexpr (N > 0) found = distance<N>(truth, record, in_truth.data(), in_estimate.data());
+  });
+  return found;
+}
+
+}  // namespace
 
 Scorer::Scorer(const StateSpace& truth, const StateSpace& estimate) : truth_(&truth) {
-  std::vector<int> place_of(truth.components.size(), -1);
-  for (int i = 0; i < truth.size(); ++i) {
-    const int in_estimate = estimate.component_index(truth.components[static_cast<std::size_t>(i)]);
-    if (in_estimate < 0) continue;
-    place_of[static_cast<std::size_t>(i)] = static_cast<int>(truth_index_.size());
-    truth_index_.push_back(i);
-    estimate_index_.push_back(in_estimate);
-  }
+  const auto add = [&](Places& places, int in_truth) {
+    const int in_estimate = estimate.component_index(truth.components[static_cast<std::size_t>(in_truth)]);
+    if (in_estimate < 0) return;
+    places.truth.push_back(in_truth);
+    places.estimate.push_back(in_estimate);
+  };
+  for (int i = 0; i < truth.size(); ++i) add(all_, i);
   for (const Quantity& quantity : truth.quantities) {
-    std::vector<int> places;
-    for (const int index : quantity.indices)
-      if (place_of[static_cast<std::size_t>(index)] >= 0) places.push_back(place_of[static_cast<std::size_t>(index)]);
-    if (places.size() != quantity.indices.size()) continue;
+    Places places;
+    for (const int index : quantity.indices) add(places, index);
+    if (places.truth.size() != quantity.indices.size()) continue;
     quantity_names_.push_back(quantity.name);
     quantities_.push_back(std::move(places));
     scales_.push_back(quantity.scale);
@@ -41,20 +69,20 @@ std::optional<std::size_t> Scorer::quantity(const std::string& name) const {
   return static_cast<std::size_t>(found - quantity_names_.begin());
 }
 
-BoundedVector Scorer::difference(const BoundedVector& truth, const BoundedVector& estimate) const {
-  return truth(truth_index_) - estimate(estimate_index_);
-}
-
 double Scorer::error(std::size_t quantity, const BoundedVector& truth, const BoundedVector& estimate) const {
-  return scales_[quantity] * difference(truth, estimate)(quantities_[quantity]).norm();
+  const Places& places = quantities_[quantity];
+  BoundedVector d(places.size());
+  for (int i = 0; i < places.size(); ++i)
+    d[i] = truth[places.truth[static_cast<std::size_t>(i)]] - estimate[places.estimate[static_cast<std::size_t>(i)]];
+  return scales_[quantity] * d.norm();
 }
 
 double Scorer::true_value(std::size_t quantity, const BoundedVector& truth) const {
-  return scales_[quantity] * truth[truth_index_[static_cast<std::size_t>(quantities_[quantity].front())]];
+  return scales_[quantity] * truth[quantities_[quantity].truth.front()];
 }
 
 double Scorer::estimated_value(std::size_t quantity, const BoundedVector& estimate) const {
-  return scales_[quantity] * estimate[estimate_index_[static_cast<std::size_t>(quantities_[quantity].front())]];
+  return scales_[quantity] * estimate[quantities_[quantity].estimate.front()];
 }
 
 void Scorer::prepare(RunScore& score, std::size_t steps, std::size_t targets) const {
@@ -67,14 +95,12 @@ void Scorer::prepare(RunScore& score, std::size_t steps, std::size_t targets) co
 
 void Scorer::score_step(const BoundedVector& truth, const StepRecord& record, std::size_t place,
                         RunScore& score) const {
-  const BoundedVector d = difference(truth, record.x);
-  const BoundedMatrix P = record.P(estimate_index_, estimate_index_);
   for (std::size_t q = 0; q < quantities_.size(); ++q) {
-    const BoundedVector part = d(quantities_[q]);
-    score.error[q][place] = scales_[q] * part.norm();
-    score.quantity_nees[q][place] = mahalanobis_squared(BoundedMatrix(P(quantities_[q], quantities_[q])), part);
+    const Distance off = distance(truth, record, quantities_[q].truth, quantities_[q].estimate);
+    score.error[q][place] = scales_[q] * off.norm;
+    score.quantity_nees[q][place] = off.squared_by_P;
   }
-  score.nees[place] = mahalanobis_squared(P, d);
+  score.nees[place] = distance(truth, record, all_.truth, all_.estimate).squared_by_P;
   if (record.correction) {
     ++score.corrected;
     score.gate_sum += record.correction->gate;

@@ -25,9 +25,9 @@ class Scorer {
   /// Place of a quantity in quantities(), or nothing.
   std::optional<std::size_t> quantity(const std::string& name) const;
   /// How many components the NEES is taken over: its expected value for a consistent tracker.
-  int dimension() const { return static_cast<int>(truth_index_.size()); }
+  int dimension() const { return all_.size(); }
   /// The same for one quantity.
-  int dimension(std::size_t quantity) const { return static_cast<int>(quantities_[quantity].size()); }
+  int dimension(std::size_t quantity) const { return quantities_[quantity].size(); }
 
   /// The 2-norm of truth - estimate in that quantity, in its unit.
   double error(std::size_t quantity, const BoundedVector& truth, const BoundedVector& estimate) const;
@@ -39,14 +39,18 @@ class Scorer {
   void score_step(const BoundedVector& truth, const StepRecord& record, std::size_t place, RunScore& score) const;
 
  private:
-  BoundedVector difference(const BoundedVector& truth, const BoundedVector& estimate) const;
+  // Of components that both have: where they stand in the truth and in the estimate.
+  struct Places {
+    std::vector<int> truth;
+    std::vector<int> estimate;
+    int size() const { return static_cast<int>(truth.size()); }
+  };
 
   const StateSpace* truth_;
-  std::vector<int> truth_index_;     // of each component that both have
-  std::vector<int> estimate_index_;  // its place in the estimate
+  Places all_;
   std::vector<std::string> quantity_names_;
-  std::vector<std::vector<int>> quantities_;  // places in the two lists above
-  std::vector<double> scales_;                // [quantity]: from the unit of the components to its own
+  std::vector<Places> quantities_;
+  std::vector<double> scales_;  // [quantity]: from the unit of the components to its own
 };
 
 }  // namespace truebearing

@@ -72,6 +72,8 @@ class FilterState final : public TrackedState {
     show();
   }
 
+  const std::shared_ptr<const Motion>& motion() const { return motion_; }
+
   void begin(const double* x, const double* P) override {
     filter_ = Filter(matrix_at<N, 1>(x), matrix_at<N, N>(P));
     show();

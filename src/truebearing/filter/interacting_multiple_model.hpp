@@ -5,26 +5,23 @@
 //     mixing     c_j = sum_i Pi_ij mu_i,  mu_i|j = Pi_ij mu_i / c_j,
 //                x_0j = sum_i mu_i|j x_i,  P_0j = sum_i mu_i|j (P_i + (x_i - x_0j)(x_i - x_0j)')
 //     weighting  mu_j ~ c_j N(nu_j; 0, S_j)
-// States may be of unequal length: every state is the beginning of the longest one (n). What mode i does not have and
-// mode j has, an acceleration say, mode j takes from itself when it mixes: zeros from i would pull it towards no
-// acceleration with a false certainty (Granstrom, Willett and Bar-Shalom 2015).
+// The filters themselves are a ModeBank.
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "truebearing/core/bounded.hpp"
 #include "truebearing/filter/markov_chain.hpp"
+#include "truebearing/filter/mode_bank.hpp"
 #include "truebearing/filter/tracked_state.hpp"
 
 namespace truebearing {
 
 class InteractingMultipleModel final : public TrackedState {
  public:
-  using Modes = std::vector<std::unique_ptr<TrackedState>>;
+  using Modes = ModeBank::Modes;
 
   /// `modes` (r, 1 to kMaxModes), each a filter under one motion, and a chain of as many. Begun at zero.
   InteractingMultipleModel(Modes modes, MarkovChain chain);
@@ -38,22 +35,19 @@ class InteractingMultipleModel final : public TrackedState {
   StepStatus update(const AnyMeasurement& measurement, const StateUpdateTarget& update) override;
   void assign(const TrackedState& other) override;
   std::unique_ptr<TrackedState> fresh() const override;
-  std::span<const std::unique_ptr<TrackedState>> modes() const override { return modes_; }
+  std::span<const std::unique_ptr<TrackedState>> modes() const override { return modes_->modes(); }
   ModeMatrix transition(double dt_s) const override { return chain_.over(dt_s); }
 
  private:
-  Eigen::Index mode_count() const { return probabilities_.size(); }
-  void mix_all(const ModeMatrix& Pi, const ModeVector& c);
-  void mixture_of_innovations(const ModeVector& log_weight, const StateUpdateTarget& combined) const;
+  InteractingMultipleModel(int size, std::unique_ptr<ModeBank> modes, const MarkovChain& chain);
+  void set_up();
   void refresh() const override;
 
-  Modes modes_;
-  Modes scratch_;  // what the modes are to become, until all of them have
+  std::unique_ptr<ModeBank> modes_;
   MarkovChain chain_;
   ModeVector probabilities_;  // mu
   ModeVector predicted_;      // c of the last prediction
-  std::array<StateUpdate, kMaxModes> updates_;
-  // Mean and covariance of the mixture. What a mode's state lacks is zero in it.
+  // Mean and covariance of the mixture.
   mutable BoundedVector x_;
   mutable BoundedMatrix P_;
 };

@@ -135,6 +135,7 @@ void FeatureExtractor::extract(const StepRecord& base, std::span<const StepRecor
   rotation_ = FrameRotation(frame_, base.x, base.sensor);
   if (wants_sigma_) sigma_ = rotation_.covariance(base.P).diagonal().cwiseSqrt();
   features.resize(size());
+  normalised_of_ = nullptr;
   for (int i = 0; i < size(); ++i) {
     Term& term = terms_[static_cast<std::size_t>(i)];
     const StepRecord* companion = term.companion < 0 ? nullptr : companions[static_cast<std::size_t>(term.companion)];
@@ -147,7 +148,7 @@ void FeatureExtractor::extract(const StepRecord& base, std::span<const StepRecor
 }
 
 // Takes from a step in which the measurement was used what later steps want to know of it.
-void FeatureExtractor::remember(Term& term, const StepRecord& record) const {
+void FeatureExtractor::remember(Term& term, const StepRecord& record) {
   if (record.status != StepStatus::ok || !record.innovation) return;
   const Innovation& innovation = *record.innovation;
   BoundedVector& memory = term.memory;
@@ -162,7 +163,7 @@ void FeatureExtractor::remember(Term& term, const StepRecord& record) const {
     case FeatureKind::innovation:
     case FeatureKind::innovation_average: {
       const double alpha = term.kind == FeatureKind::innovation ? 1.0 : term.alpha;
-      const BoundedVector e = normalised(innovation, frame_);
+      const BoundedVector& e = normalised_innovation(record);
       if (memory.size() != e.size()) memory = BoundedVector::Zero(e.size());
       for (Eigen::Index i = 0; i < memory.size(); ++i)
         memory[i] = alpha == 1.0 ? e[i] : memory[i] + alpha * (e[i] - memory[i]);
@@ -215,6 +216,14 @@ void FeatureExtractor::remember(Term& term, const StepRecord& record) const {
     case FeatureKind::sensor:
       break;
   }
+}
+
+const BoundedVector& FeatureExtractor::normalised_innovation(const StepRecord& record) {
+  if (normalised_of_ != &record) {
+    normalised_ = normalised(*record.innovation, frame_);
+    normalised_of_ = &record;
+  }
+  return normalised_;
 }
 
 double FeatureExtractor::value(const Term& term, const StepRecord& base, const StepRecord* companion) const {

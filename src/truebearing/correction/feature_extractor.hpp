@@ -57,7 +57,8 @@ class FeatureExtractor {
   };
 
   void begin_track(const StepRecord& base);
-  void remember(Term& term, const StepRecord& record) const;
+  void remember(Term& term, const StepRecord& record);
+  const BoundedVector& normalised_innovation(const StepRecord& record);
   double value(const Term& term, const StepRecord& base, const StepRecord* companion) const;
 
   Frame frame_ = Frame::state;
@@ -68,6 +69,9 @@ class FeatureExtractor {
   FrameRotation rotation_;  // of this step
   BoundedVector sigma_;     // the base's standard deviations in the frame, where a feature wants them
   BoundedMatrix gain_;      // of the last used measurement
+  // Of this step the innovation that was normalised last, and whose: several features in turn ask for that of one.
+  const StepRecord* normalised_of_ = nullptr;
+  BoundedVector normalised_;
   IntervalMemory interval_memory_;
   int track_ = -1;
   double began_s_ = 0.0;

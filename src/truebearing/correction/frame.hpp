@@ -72,13 +72,25 @@ class FrameRotation {
   /// A covariance of states in the frame, and back.
   BoundedMatrix covariance(const BoundedMatrix& P) const {
     if (!rotates_) return P;
-    BoundedMatrix turned = P;
     const Eigen::Index n = P.rows(), d = dimensions(n);
-    for (Eigen::Index j = 0; j < n; ++j)
-      for (Eigen::Index i = 0; i < n; i += d) turned.col(j).segment<2>(i) = turn(turned.col(j).segment<2>(i));
-    for (Eigen::Index i = 0; i < n; ++i)
-      for (Eigen::Index j = 0; j < n; j += d)
-        turned.row(i).segment<2>(j) = turn(turned.row(i).segment<2>(j).transpose()).transpose();
+    BoundedMatrix turned(n, n);
+    const double *from = P.data(), x = along_.x(), y = along_.y();
+    double* to = turned.data();
+    for (Eigen::Index j = 0; j < n; ++j)  // the rows of each column, then the columns of each row
+      for (Eigen::Index i = 0; i < n; i += d) {
+        const double* p = from + i + j * n;
+        double* q = to + i + j * n;
+        q[0] = x * p[0] + y * p[1];
+        q[1] = y * p[0] - x * p[1];
+        if (d == 3) q[2] = p[2];
+      }
+    for (Eigen::Index j = 0; j < n; j += d)
+      for (Eigen::Index i = 0; i < n; ++i) {
+        double *p = to + i + j * n, *q = p + n;
+        const double along = x * *p + y * *q, across = y * *p - x * *q;
+        *p = along;
+        *q = across;
+      }
     return turned;
   }
   bool rotates() const { return rotates_; }

@@ -21,9 +21,12 @@ constexpr int kFailedInRow = 3;
 template <int N>
 bool is_sensible(const double* x, const double* P, int positions) {
   constexpr double kFarthest_m = 1e7;
-  double sum = 0.0;  // not finite where a number is not
-  for (int i = 0; i < N; ++i) sum += x[i];
-  for (int i = 0; i < N * N; ++i) sum += P[i];
+  double sums[static_cast<std::size_t>(N > 0 ? N : 1)];  // not finite where a number is not; several, for none to wait
+  for (int i = 0; i < N; ++i) sums[i] = x[i];
+  for (int j = 0; j < N; ++j)
+    for (int i = 0; i < N; ++i) sums[i] += P[i + j * N];
+  double sum = 0.0;
+  for (int i = 0; i < N; ++i) sum += sums[i];
   double least_variance = P[0];
   for (int i = 1; i < N; ++i) least_variance = std::min(least_variance, P[i * (N + 1)]);
   bool sensible = std::isfinite(sum) & (least_variance >= 0.0);

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "truebearing/filter/factorization.hpp"
+#include "truebearing/filter/leading_identity.hpp"
 #include "truebearing/filter/product.hpp"
 #include "truebearing/filter/small_matrix.hpp"
 #include "truebearing/filter/update.hpp"
@@ -63,19 +64,19 @@ struct CovarianceForm {
   /// S_ii is summed from terms of the size t_i = sum_j H_ij^2 P_jj + R_ii, so rounding leaves its pivots (the
   /// innovation variances given the components before them) wrong by about t_i eps/2, and S^-1 by eps/2 t_i / pivot,
   /// relatively.
-  template <int N, int M, typename Scalar>
-  EIGEN_ALWAYS_INLINE static bool gain(const Eigen::Matrix<Scalar, N, N>& P, const Eigen::Matrix<Scalar, M, N>& H,
+  /// H: a matrix (m x n) or a LeadingIdentity.
+  template <int N, int M, typename Scalar, typename Observation>
+  EIGEN_ALWAYS_INLINE static bool gain(const Eigen::Matrix<Scalar, N, N>& P, const Observation& H,
                                        const Eigen::Matrix<Scalar, M, M>& R, Eigen::Matrix<Scalar, N, M>& PHt,
                                        Update<N, M, Scalar>& update) {
     constexpr Scalar kLeastPivot = std::numeric_limits<Scalar>::epsilon() / Scalar(2 * kTrustedError);
-    PHt = product(P, transposed(H));
+    PHt = observed(P, H);
     copy(R, update.S);
-    add_product<1, Part::lower>(H, PHt, update.S);
+    add_observed(H, PHt, update.S);
     mirror_lower<M, Scalar>(update.S);
     Eigen::Matrix<Scalar, M, 1> least;
     for (int i = 0; i < M; ++i) {
-      Scalar t = R(i, i);
-      for (int j = 0; j < N; ++j) t += H(i, j) * H(i, j) * P(j, j);
+      const Scalar t = size_of_terms(H, P, R(i, i), i);
       least(i) = kLeastPivot * t + std::numeric_limits<Scalar>::min();
     }
     const Ldlt<M, Scalar> factors(update.S, least);
@@ -92,15 +93,15 @@ struct CovarianceForm {
 
 /// The default: positive semi-definite and symmetric whatever K is, and insensitive to first order to errors in K.
 struct Joseph : detail::CovarianceForm {
-  template <int N, int M, typename Scalar>
-  EIGEN_ALWAYS_INLINE static bool update(Eigen::Matrix<Scalar, N, N>& P, const Eigen::Matrix<Scalar, M, N>& H,
+  template <int N, int M, typename Scalar, typename Observation>
+  EIGEN_ALWAYS_INLINE static bool update(Eigen::Matrix<Scalar, N, N>& P, const Observation& H,
                                          const Eigen::Matrix<Scalar, M, M>& R, Update<N, M, Scalar>& update) {
     Eigen::Matrix<Scalar, N, M> PHt;
-    const bool valid = gain(P, H, R, PHt, update);
+    const bool valid = gain<N, M, Scalar>(P, H, R, PHt, update);
     // The product taken one factor at a time, A = (I - K H) P, then A - (A H' - K R) K': the same errors as with I - K
     // H formed, for fewer multiplications.
     add_product<-1>(update.K, transposed(PHt), P);
-    PHt = product(P, transposed(H));
+    PHt = detail::observed(P, H);
     add_product<-1>(update.K, R, PHt);
     add_product<-1, Part::lower>(PHt, transposed(update.K), P);
     detail::mirror_lower<N, Scalar>(P);
@@ -111,11 +112,11 @@ struct Joseph : detail::CovarianceForm {
 /// P - K S K', symmetrised. For comparison only: where a measurement is much better than the prediction, it subtracts
 /// nearly equal matrices, and says so only once P is no longer positive semi-definite.
 struct Conventional : detail::CovarianceForm {
-  template <int N, int M, typename Scalar>
-  EIGEN_ALWAYS_INLINE static bool update(Eigen::Matrix<Scalar, N, N>& P, const Eigen::Matrix<Scalar, M, N>& H,
+  template <int N, int M, typename Scalar, typename Observation>
+  EIGEN_ALWAYS_INLINE static bool update(Eigen::Matrix<Scalar, N, N>& P, const Observation& H,
                                          const Eigen::Matrix<Scalar, M, M>& R, Update<N, M, Scalar>& update) {
     Eigen::Matrix<Scalar, N, M> PHt;
-    const bool valid = gain(P, H, R, PHt, update);
+    const bool valid = gain<N, M, Scalar>(P, H, R, PHt, update);
     add_product<-1>(update.K, transposed(PHt), P);
     for (int j = 0; j < N; ++j)
       for (int i = 0; i <= j; ++i) P(i, j) = P(j, i) = Scalar(0.5) * (P(i, j) + P(j, i));

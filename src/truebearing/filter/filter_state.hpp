@@ -10,12 +10,11 @@
 #include "truebearing/core/constants.hpp"
 #include "truebearing/filter/any_measurement.hpp"
 #include "truebearing/filter/erased_motion.hpp"
+#include "truebearing/filter/leading_identity.hpp"
 #include "truebearing/filter/small_matrix.hpp"
 #include "truebearing/filter/tracked_state.hpp"
 #include "truebearing/filter/update.hpp"
 #include "truebearing/measurement/bearing.hpp"
-#include "truebearing/measurement/cartesian_position.hpp"
-#include "truebearing/measurement/longer_state.hpp"
 #include "truebearing/motion/any_motion.hpp"
 
 namespace truebearing {
@@ -25,6 +24,25 @@ namespace detail {
 /// Whether a measured position has a compiled form of its own: of a state on the line or in the plane.
 template <int N, int M>
 inline constexpr bool kHasPositionForm = M == (N <= 3 ? 1 : 2) && N <= 6;
+
+/// A measured position on a state of N components that it begins.
+template <int N, int M>
+struct MeasuredPosition {
+  using Scalar = double;
+  static constexpr int kStates = N;
+  static constexpr int kMeasurements = M;
+  using State = Eigen::Matrix<double, N, 1>;
+  using Vector = Eigen::Matrix<double, M, 1>;
+  using Covariance = Eigen::Matrix<double, M, M>;
+
+  const Covariance& R_m2;
+
+  Vector h(const State& x) const { return x.template head<M>(); }
+  LeadingIdentity<M, N> H(const State&) const { return {}; }
+  const Covariance& R() const { return R_m2; }
+  Vector residual(const Vector& z, const Vector& z_pred) const { return z - z_pred; }
+};
+static_assert(MeasurementModel<MeasuredPosition<5, 2>>);
 
 /// Four components at once are measured of targets in space alone.
 template <int N, int M>
@@ -51,7 +69,7 @@ template <typename Filter, int M>
 template <typename Filter, int M>
 EIGEN_ALWAYS_INLINE Update<Filter::kStates, M> update_by(Filter& filter, const SizedMeasurement<M>& measurement) {
   if constexpr (detail::kHasPositionForm<Filter::kStates, M>) {
-    const auto position = on_state<Filter::kStates>(CartesianPosition<M>{measurement.R});
+    const detail::MeasuredPosition<Filter::kStates, M> position{measurement.R};
     if constexpr (requires { filter.update(position, measurement.z); })
       if (measurement.is_position()) return filter.update(position, measurement.z);
   }

@@ -71,7 +71,7 @@ class KalmanFilter {
     Update<N, M, Scalar> update;
     update.nu = model.residual(z, model.h(x_));
     Covariance carried = carried_;
-    const bool valid = Form::template update<N, M, Scalar>(carried, model.H(x_), model.R(), update);
+    const bool valid = Form::template update<N, M, Scalar>(carried, detail::jacobian_of(model, x_), model.R(), update);
     State x;
     copy(x_, x);
     add_product<1>(update.K, update.nu, x);

@@ -55,7 +55,8 @@ class ModifiedGainFilter {
     Update<N, M, Scalar> update;
     update.nu = model.residual(z, model.h(x_pred));
     Eigen::Matrix<Scalar, N, M> Pgt;
-    const bool valid = detail::CovarianceForm::gain<N, M, Scalar>(P, model.H(x_pred), R, Pgt, update);
+    const bool valid =
+        detail::CovarianceForm::gain<N, M, Scalar>(P, detail::jacobian_of(model, x_pred), R, Pgt, update);
 
     // One factor at a time: A = (I - K g) P, then A - (A g' - K R) K'.
     const Eigen::Matrix<Scalar, M, N> g = model.modified_gain(z, x_pred);

@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "app/output.hpp"
+#include "app/tracked_log.hpp"
 #include "truebearing/array/recorded_array.hpp"
 #include "truebearing/evaluation/report.hpp"
 #include "truebearing/recording/snapshot_log.hpp"
@@ -24,6 +26,13 @@ std::unique_ptr<Scenario> recorded_truth(const Study& study, const CompareStudyO
                    Measured::snapshots(array_of(recorded->simulate({options.seed, Role::evaluation, 0})).sensors),
                    options.truth);
   return recorded;
+}
+
+// The run between the better and the worse half; the first where none was drawn.
+std::size_t median_run(const std::vector<RunPicture>& pictures) {
+  for (const RunPicture& picture : pictures)
+    if (picture.which == "median") return picture.run;
+  return 0;
 }
 
 }  // namespace
@@ -57,7 +66,11 @@ void compare_study(const Study& study, const CorrectionModels& models, const Com
   std::vector<RunPicture> pictures;
   if (options.report.wanted())
     pictures = picture_runs(trackers, scenarios, comparison_options, comparison, sensor_sites(study));
-  const std::string json = comparison_json(comparison, pictures);
+  nlohmann::ordered_json on_log;
+  if (recorded && options.report.wanted())
+    on_log =
+        run_json(study, options.truth, trackers, *recorded, {options.seed, Role::evaluation, median_run(pictures)});
+  const std::string json = comparison_json(comparison, pictures, on_log.is_null() ? nullptr : &on_log);
   const bool prints = !is_standard_output(options.json) && !is_standard_output(options.report.page);
   if (prints) fmt::print("{}{}", notes, with_best_coloured(comparison_table(comparison, options.tables.layout())));
   if (!options.json.empty()) write_output(options.json, json);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -23,11 +24,13 @@
 #include "app/track_output.hpp"
 #include "app/track_report.hpp"
 #include "app/track_run.hpp"
+#include "app/tracked_log.hpp"
 #include "truebearing/array/recorded_array.hpp"
 #include "truebearing/core/constants.hpp"
 #include "truebearing/evaluation/report.hpp"
 #include "truebearing/evaluation/time_steps.hpp"
 #include "truebearing/io/csv.hpp"
+#include "truebearing/io/json_file.hpp"
 #include "truebearing/recording/geographic_track.hpp"
 #include "truebearing/recording/recording_csv.hpp"
 #include "truebearing/recording/snapshot_log.hpp"
@@ -135,15 +138,9 @@ void say_epoch(const TrackArguments& options, double epoch_s) {
                     options.log, epoch_s));
 }
 
-// What can be said of logs without truth. numbers: of their tracks.
-void write_log_results(const Study& study, const TrackArguments& options, const TrackRun& run,
-                       const Recording::Counts& rows, const KeptLogs& logs, const std::vector<ForetoldLog>& foretold) {
-  LogFollower follower(run.trackers(), sensor_sites(study));
-  for (const auto& [number, recording] : logs) follower.follow(recording, number, run.contents().epoch_s);
-  TrackedLog tracked{study.name(), options.log, run.contents().measurements, rows, {}, follower.take()};
-  for (const Followed& followed : run.all())
-    tracked.why_none.push_back(followed.records > 0 ? "" : why_no_track(study, followed.name, run.contents()));
-  const std::string json = with_foretelling(log_json(tracked, run.all()), foretold);
+void write_log_results(const TrackArguments& options, const nlohmann::ordered_json& on_log,
+                       const std::vector<ForetoldLog>& foretold) {
+  const std::string json = with_foretelling(json_text(on_log), foretold);
   if (!options.json.empty()) write_output(options.json, json);
   if (!options.report.page.empty()) write_output(options.report.page, log_page(json, options.log));
   if (!options.report.svg.empty()) write_plots(options.report.svg, log_plot_files(json, options.log));
@@ -171,6 +168,8 @@ void finish(const Study& study, const TrackArguments& options, TrackRun& run, co
   if (for_people) report(study, options, run, rows);
   for (const std::string& line : consistency_warnings(run.all())) say("truebearing: " + line);
   const KeptLogs foretold = options.foretold > 0 ? logs : KeptLogs();
+  nlohmann::ordered_json on_log;
+  if (options.wants_results()) on_log = log_json(tracked_log(study, options.log, run, rows, logs), run.all());
   std::vector<Recording> tracks;
   for (auto& [number, recording] : logs)
     if (recording.truth_space) tracks.push_back(std::move(recording));
@@ -179,12 +178,14 @@ void finish(const Study& study, const TrackArguments& options, TrackRun& run, co
   run.finish();
   const std::vector<ForetoldLog> told = who_foretells(study, options, run, foretold);
   if (!scored) {
-    if (options.wants_results()) write_log_results(study, options, run, rows, logs, told);
+    if (options.wants_results()) write_log_results(options, on_log, told);
     return;
   }
   if (for_people) fmt::print("\n{}", comparison_table(scored->comparison, TableArguments{}.layout()));
   if (!options.wants_results()) return;
-  const std::string json = with_foretelling(comparison_json(scored->comparison, scored->pictures), told);
+  on_log.erase("picture");  // which stands beside its truth
+  const std::string json = with_foretelling(
+      comparison_json(scored->comparison, scored->pictures, options.report.wanted() ? &on_log : nullptr), told);
   if (!options.json.empty()) write_output(options.json, json);
   if (options.report.wanted()) write_report(options.report, {parse_results(json, options.log)});
 }

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `truebearing track` says of a log without truth, for programs and for its page.
+// What a log says without truth, for programs and for its page.
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "app/track_report.hpp"
 #include "truebearing/evaluation/details_json.hpp"
 #include "truebearing/evaluation/six_digits.hpp"
-#include "truebearing/io/json_file.hpp"
 
 namespace truebearing {
 namespace {
@@ -72,7 +71,7 @@ Json tracker_json(const Followed& followed, const TrackerOnLog& on_log, const st
 
 }  // namespace
 
-std::string log_json(const TrackedLog& tracked, const std::vector<Followed>& all) {
+Json log_json(const TrackedLog& tracked, const std::vector<Followed>& all) {
   Json json{{"study", tracked.study},
             {"log", tracked.log},
             {"version", TRUEBEARING_VERSION},
@@ -80,6 +79,7 @@ std::string log_json(const TrackedLog& tracked, const std::vector<Followed>& all
             {"missing", tracked.rows.missing},
             {"repeated", tracked.rows.repeated},
             {"warnings", consistency_warnings(all)}};
+  if (tracked.run) json["run"] = *tracked.run;
   json["trackers"] = Json::object();
   for (std::size_t i = 0; i < all.size(); ++i)
     json["trackers"][all[i].name] = tracker_json(all[i], tracked.account.trackers[i], tracked.why_none[i]);
@@ -91,7 +91,7 @@ std::string log_json(const TrackedLog& tracked, const std::vector<Followed>& all
                                 {"event", to_string(event.kind)},
                                 {"value", known(event.value)}});
   json["picture"] = picture_json(tracked.account.picture);
-  return json_text(json);
+  return json;
 }
 
 }  // namespace truebearing

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,9 +40,10 @@ struct TrackedLog {
   Recording::Counts rows;
   std::vector<std::string> why_none;  ///< [tracker]: why it began no track; empty where it did
   LogAccount account;
+  std::optional<std::size_t> run = {};  ///< of a truth that is measured afresh in each, from 0
 };
 
 /// As JSON: consistency, last estimates, innovations, what was not used and why, events, and the picture of the tracks.
-std::string log_json(const TrackedLog& tracked, const std::vector<Followed>& all);
+nlohmann::ordered_json log_json(const TrackedLog& tracked, const std::vector<Followed>& all);
 
 }  // namespace truebearing

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/track_output.hpp"
@@ -21,11 +22,15 @@ class TrackRun {
   /// records, events: where these are written, or empty. measured: columns of the log.
   TrackRun(const Study& study, const std::string& records, const std::string& events, int measured,
            const RecordingOptions& reading = {})
-      : trackers_(study.make_tracker_set()), sources_(reading.sources) {
+      : TrackRun(study.make_tracker_set()) {
+    sources_ = reading.sources;
     if (reading.late_keep_s > 0.0) late_.emplace(trackers_, reading.late_keep_s);
-    for (int i = 0; i < trackers_.size(); ++i) all_.emplace_back().name = trackers_.name(i);
     if (!records.empty()) records_.emplace(records, trackers_, measured, sources_, late_.has_value());
     if (!events.empty()) events_.emplace(events);
+  }
+  /// Which only counts and remembers.
+  explicit TrackRun(TrackerSet trackers) : trackers_(std::move(trackers)) {
+    for (int i = 0; i < trackers_.size(); ++i) all_.emplace_back().name = trackers_.name(i);
   }
 
   const TrackerSet& trackers() const { return trackers_; }

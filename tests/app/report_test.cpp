@@ -93,6 +93,24 @@ TEST(Report, TrackAndTmaDrawTheirLogs) {
   ASSERT_EQ(tracked.status, 0) << tracked.err;
   EXPECT_EQ(read_markup(folder.read("track.html")).error, "");
   EXPECT_THAT(folder.read("track.html"), HasSubstr("id=\"run_median-title\""));
+  // What the log says without its truth stands beside the errors: innovations and NIS of plain and tuned.
+  for (const char* shown : {"id=\"innovations_0-title\"", "id=\"nis_1-title\"", "What the log says without its truth",
+                            "40 measurements, of which 0 miss", "Last estimates", "What was not used"})
+    EXPECT_THAT(folder.read("track.html"), HasSubstr(shown));
+
+  // A recorded truth is measured afresh; the page tells of the median run, and is made of the JSON alone.
+  const Outcome afresh = run(
+      folder, "compare small.toml --truth log.csv --runs 5 --report truth.html --json truth.json --svg truth --quiet");
+  ASSERT_EQ(afresh.status, 0) << afresh.err;
+  const std::string measured = folder.read("truth.html");
+  EXPECT_EQ(read_markup(measured).error, "");
+  const nlohmann::json truth = nlohmann::json::parse(folder.read("truth.json"));
+  EXPECT_EQ(truth["on_log"]["run"], truth["pictures"][1]["run"]) << "the median";
+  EXPECT_THAT(measured, HasSubstr(fmt::format("Of run {}: ", truth["on_log"]["run"].get<int>())));
+  EXPECT_THAT(measured, HasSubstr("id=\"innovations_1-title\""));
+  EXPECT_EQ(read_markup(folder.read("truth/small_nis_0.svg")).error, "");
+  ASSERT_EQ(run(folder, "report truth.json -o again.html").status, 0);
+  EXPECT_EQ(folder.read("again.html"), replaced(measured, "from small (", "from truth.json ("));
 
   // Without its truth there is something to be said too, and the page is made of the JSON alone.
   std::string blind;

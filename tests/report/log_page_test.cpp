@@ -4,10 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "tests/support/error_message.hpp"
 #include "tests/support/markup.hpp"
+#include "tests/support/result_texts.hpp"
 
 namespace truebearing::log_page_test {
 namespace {
@@ -142,6 +144,42 @@ TEST(LogPage, SaysWhoIsConsistentByItsNis) {
   EXPECT_EQ(log_answer(parse_log_results(json.dump(), "a.json")),
             "No tracker has innovations by which it could be judged.");
   EXPECT_THAT(log_page(json.dump(), "a.json"), HasSubstr("tuned began no track: its start &lt;needs&gt; a guess"));
+}
+
+// As results hold it: without a picture of tracks, which stand beside their truth there.
+Json results_of_log() {
+  Json json = testing::results_json();
+  json["on_log"] = log_of();
+  json["on_log"].erase("picture");
+  return json;
+}
+
+TEST(LogPage, OfALogWithTruthShowsTheSameBesideItsErrors) {
+  EXPECT_EQ(parse_results(testing::results_json().dump(), "a.json").on_log, nullptr);
+  EXPECT_EQ(on_log_section(parse_results(testing::results_json().dump(), "a.json"), ""), "");
+  const std::string page = report_page({parse_results(results_of_log().dump(), "a.json")});
+  EXPECT_EQ(read_markup(page).error, "");
+  EXPECT_THAT(page, HasSubstr("<h2>What the log says without its truth</h2>\n<p>13 measurements, of which 1 miss; 0 "
+                              "repeated rows dropped.</p>"));
+  for (const char* id : {"innovations_0", "nis_0", "innovations_1", "nis_1"})
+    EXPECT_EQ(count_of(page, fmt::format("id=\"{}-frame\"", id)), 1) << id;
+  EXPECT_EQ(count_of(page, "id=\"tracks-frame\""), 0);
+  EXPECT_THAT(page, HasSubstr("<td>gated</td><td>outside the gate</td><td>49</td>"));
+  EXPECT_THAT(page, HasSubstr("<th scope=\"row\">tuned</th><td>turn began</td>"));
+  EXPECT_THAT(page, HasSubstr("plain: too large"));
+}
+
+TEST(LogPage, OfARunSaysWhichAndOfFilesSideBySideIsOfEach) {
+  Json json = results_of_log();
+  json["on_log"]["run"] = 1;
+  const Results results = parse_results(json.dump(), "a.json");
+  EXPECT_THAT(on_log_section(results, ""), HasSubstr("<p>Of run 1: 13 measurements"));
+  const std::string page = report_page({results, results});
+  EXPECT_EQ(count_of(page, "id=\"file1_nis_0-frame\""), 1);
+  EXPECT_EQ(count_of(page, "id=\"file2_nis_0-frame\""), 1);
+  json["on_log"]["trackers"]["tuned"].erase("counts");
+  EXPECT_THAT(error_message([&] { parse_results(json.dump(), "a.json"); }),
+              HasSubstr("a.json: on_log.trackers.tuned: has no \"counts\""));
 }
 
 TEST(LogPage, WithoutRejectionsSaysSo) {

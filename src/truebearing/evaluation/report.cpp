@@ -304,7 +304,7 @@ std::string comparison_table(const Comparison& comparison, const TableLayout& la
   return text + tables(comparison, layout) + sources(comparison);
 }
 
-std::string comparison_json(const Comparison& comparison, const std::vector<RunPicture>& pictures) {
+std::string comparison_json(const Comparison& comparison, const std::vector<RunPicture>& pictures, const Json* on_log) {
   Json json;
   json["study"] = comparison.study;
   json["seed"] = comparison.seed;
@@ -313,6 +313,7 @@ std::string comparison_json(const Comparison& comparison, const std::vector<RunP
   add_figures(comparison, json);
   for (const auto& [name, set] : comparison.sets) add_figures(set, json["sets"][name]);
   add_details(comparison, pictures, json);
+  if (on_log) json["on_log"] = *on_log;
   return json_text(json);
 }
 

@@ -177,6 +177,25 @@ std::string not_used_of(const LogResults& results) {
   return text;
 }
 
+// In a sentence that another may begin.
+std::string measurements_of(const LogResults& results) {
+  return fmt::format("{} measurements, of which {} miss; {} repeated rows dropped.", shown(results.measurements, 9),
+                     shown(results.missing, 9), shown(results.repeated, 9));
+}
+
+std::string warnings_of(const LogResults& results) {
+  std::string text;
+  for (const std::string& warning : results.warnings)
+    text += fmt::format("<p class=\"note\">{}</p>\n", escaped(warning));
+  return text;
+}
+
+// innovations: plots of them.
+std::string found_sections(const LogResults& results, const std::vector<Plot>& innovations) {
+  return last_estimates(results) + events_of(results) + not_used_of(results) +
+         section("What was not expected", innovations);
+}
+
 }  // namespace
 
 std::string log_answer(const LogResults& results) {
@@ -197,20 +216,25 @@ std::string log_answer(const LogResults& results) {
 std::string log_page(std::string_view text, const std::string& file) {
   const LogResults results = parse_log_results(text, file);
   std::string body = fmt::format(
-      "<h1>{}</h1>\n<p class=\"question\">What can be said without truth? {} on {} measurements, of which {} miss; {} "
-      "repeated rows dropped.</p>\n<p class=\"answer\">{}</p>\n",
-      escaped(results.log), escaped(results.study), shown(results.measurements, 9), shown(results.missing, 9),
-      shown(results.repeated, 9), escaped(log_answer(results)));
-  for (const std::string& warning : results.warnings)
-    body += fmt::format("<p class=\"note\">{}</p>\n", escaped(warning));
-  body += consistency_of(results) + foretelling_section(results.foretelling);
+      "<h1>{}</h1>\n<p class=\"question\">What can be said without truth? {} on {}</p>\n<p class=\"answer\">{}</p>\n",
+      escaped(results.log), escaped(results.study), measurements_of(results), escaped(log_answer(results)));
+  body += warnings_of(results) + consistency_of(results) + foretelling_section(results.foretelling);
   std::vector<Plot> plots = log_plots(results), first, rest;
   for (Plot& plot : plots) (plot.id == "tracks" ? first : rest).push_back(std::move(plot));
-  body += section("Tracks", first) + last_estimates(results) + events_of(results) + not_used_of(results) +
-          section("What was not expected", rest);
+  body += section("Tracks", first) + found_sections(results, rest);
   body += fmt::format("<footer>Made by truebearing from {} (truebearing {}).</footer>\n", escaped(file),
                       escaped(results.version.empty() ? "of an unknown version" : results.version));
   return html_page(results.log, body);
+}
+
+std::string on_log_section(const Results& results, const std::string& id) {
+  if (!results.on_log) return {};
+  const LogResults& log = *results.on_log;
+  const bool of_several = std::isfinite(log.run) && results.runs > 1.0;
+  return fmt::format("<h2>What the log says without its truth</h2>\n<p>{}{}</p>\n<p>{}</p>\n",
+                     of_several ? fmt::format("Of run {}: ", shown(log.run, 9)) : "", measurements_of(log),
+                     escaped(log_answer(log))) +
+         warnings_of(log) + consistency_of(log) + found_sections(log, log_plots(log, id));
 }
 
 std::vector<PlotFile> log_plot_files(std::string_view text, const std::string& file) {

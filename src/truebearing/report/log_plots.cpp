@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The plots of a log without truth: the tracks in the plane or over time; of each tracker its innovations and their NIS
+// The plots of what a log says without its truth: the tracks in the plane or over time; of each tracker its innovations and their NIS
 // beside where those of a consistent one would be.
 #include <algorithm>
 #include <cmath>
@@ -37,10 +37,10 @@ void add_event(const LogResults& results, const ResultPicture& picture, const Lo
   }
 }
 
-Plot track_plot(const LogResults& results) {
+Plot track_plot(const LogResults& results, const std::string& id) {
   const ResultPicture picture = on_clock(results.picture);
   Plot plot = drawn_picture(picture, [&](const std::string& name) { return look_in(results, name); });
-  plot.id = "tracks";
+  plot.id = id + "tracks";
   plot.title = "What the trackers made of the log";
   PlotSeries marks{"something noticed", {"event"}, Shape::dots, {}, {}};
   for (const LogEvent& event : results.events) add_event(results, picture, event, marks);
@@ -89,10 +89,10 @@ PlotSeries innovations_of(const LogTracker& tracker, const PlotClock& clock, boo
   return dots;
 }
 
-Plot innovation_plot(const LogResults& results, std::size_t number) {
+Plot innovation_plot(const LogResults& results, std::size_t number, const std::string& id) {
   const LogTracker& tracker = results.trackers[number];
   Plot plot;
-  plot.id = fmt::format("innovations_{}", number);
+  plot.id = fmt::format("{}innovations_{}", id, number);
   plot.title = fmt::format("What {} did not expect", tracker.name);
   plot.y_label = "innovation (standard deviations)";
   if (tracker.time_s.empty()) return plot;
@@ -125,7 +125,7 @@ Plot innovation_plot(const LogResults& results, std::size_t number) {
   return plot;
 }
 
-Plot nis_plot(const LogResults& results, std::size_t number) {
+Plot nis_plot(const LogResults& results, std::size_t number, const std::string& id) {
   const LogTracker& tracker = results.trackers[number];
   SquaredResiduals used;
   for (std::size_t i = 0; i < tracker.time_s.size(); ++i) {
@@ -135,22 +135,22 @@ Plot nis_plot(const LogResults& results, std::size_t number) {
     used.freedom.push_back(tracker.freedom[i]);
   }
   Plot plot = consistency_plot(used, tracker.name);
-  plot.id = fmt::format("nis_{}", number);
+  plot.id = fmt::format("{}nis_{}", id, number);
   plot.title = fmt::format("Does {} know its error? NIS against time", tracker.name);
   return plot;
 }
 
 }  // namespace
 
-std::vector<Plot> log_plots(const LogResults& results) {
+std::vector<Plot> log_plots(const LogResults& results, const std::string& id) {
   std::vector<Plot> plots;
   const auto add = [&](Plot plot) {
     if (!plot.empty()) plots.push_back(std::move(plot));
   };
-  add(track_plot(results));
+  if (!results.picture.tracks.empty()) add(track_plot(results, id));
   for (std::size_t i = 0; i < results.trackers.size(); ++i) {
-    add(nis_plot(results, i));
-    add(innovation_plot(results, i));
+    add(nis_plot(results, i, id));
+    add(innovation_plot(results, i, id));
   }
   return plots;
 }

@@ -51,9 +51,7 @@ bool is_log_results(std::string_view text, const std::string& file) {
   return parsed.is_object() && parsed.contains("log") && parsed.contains("measurements");
 }
 
-LogResults parse_log_results(std::string_view text, const std::string& file) {
-  const nlohmann::ordered_json parsed = parse_ordered_json(text, file, kLogLimits);
-  const ResultReader json(parsed, file);
+LogResults read_log_results(const ResultReader& json) {
   LogResults results;
   results.study = json.at("study").text();
   results.log = json.at("log").text();
@@ -61,6 +59,7 @@ LogResults parse_log_results(std::string_view text, const std::string& file) {
   results.measurements = json.at("measurements").number();
   results.missing = json.at("missing").number();
   results.repeated = json.at("repeated").number();
+  results.run = json.number_or_nan("run");
   for (const ResultReader& warning : json.at("warnings").items()) results.warnings.push_back(warning.text());
   for (const auto& [name, tracker] : json.at("trackers").entries())
     results.trackers.push_back(read_log_tracker(name, tracker));
@@ -68,8 +67,13 @@ LogResults parse_log_results(std::string_view text, const std::string& file) {
     results.events.push_back({event.at("tracker").text(), event.at("event").text(), event.at("time_s").number(),
                               event.at("value").number()});
   results.foretelling = read_foretelling(json);
-  results.picture = read_picture(json.at("picture"));
+  if (json.has("picture")) results.picture = read_picture(json.at("picture"));
   return results;
+}
+
+LogResults parse_log_results(std::string_view text, const std::string& file) {
+  const nlohmann::ordered_json parsed = parse_ordered_json(text, file, kLogLimits);
+  return read_log_results(ResultReader(parsed, file));
 }
 
 }  // namespace truebearing

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What trackers made of a log without truth, as a page needs it: read from the JSON that `track --json` writes of one.
+// What a log says without its truth, as a page needs it: read from the JSON that `track --json` writes of one that has
+// none, and from what results of one that has a truth hold of it (`on_log`).
 #pragma once
 
 #include <string>
@@ -45,16 +46,18 @@ struct LogEvent {
 struct LogResults {
   std::string study, log, version;
   double measurements = kNaN, missing = kNaN, repeated = kNaN;
+  double run = kNaN;  ///< of a truth that is measured afresh in each
   std::vector<std::string> warnings;
   std::vector<LogTracker> trackers;
   std::vector<LogEvent> events;
   std::vector<ForetellingResults> foretelling;
-  ResultPicture picture;
+  ResultPicture picture;  ///< without a track where the results draw them beside the truth
 };
 
 /// Is this such a JSON, and not that of a comparison?
 bool is_log_results(std::string_view json, const std::string& file);
 /// Throws InputError that names the file, and the key where one is missing or of the wrong type.
 LogResults parse_log_results(std::string_view json, const std::string& file);
+LogResults read_log_results(const ResultReader& json);
 
 }  // namespace truebearing

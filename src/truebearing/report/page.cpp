@@ -6,6 +6,7 @@
 
 #include "truebearing/report/correction_plots.hpp"
 #include "truebearing/report/correction_tables.hpp"
+#include "truebearing/report/log_page.hpp"
 #include "truebearing/report/markup.hpp"
 #include "truebearing/report/page_parts.hpp"
 #include "truebearing/report/plot.hpp"
@@ -66,7 +67,7 @@ std::string results_section(const Results& results, const std::string& id, bool 
   text += foretelling_section(results.foretelling);
   // Steps of several sets do not lie at the same times.
   text += results.sets.empty() ? figures_sections(results.all, id) : section("Run by run", run_plots(results.all, id));
-  text += section("Runs as they happened", picture_plots(results, id));
+  text += section("Runs as they happened", picture_plots(results, id)) + on_log_section(results, id);
   text += correction_section(results.all, id, results.sets.empty(), true);
   for (std::size_t i = 0; i < results.sets.size(); ++i) {
     const Results::Set& set = results.sets[i];

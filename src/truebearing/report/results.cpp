@@ -5,6 +5,7 @@
 
 #include "truebearing/io/file.hpp"
 #include "truebearing/io/json_file.hpp"
+#include "truebearing/report/log_results.hpp"
 #include "truebearing/report/result_reader.hpp"
 
 namespace truebearing {
@@ -285,6 +286,7 @@ Results parse_results(std::string_view text, const std::string& file) {
   results.foretelling = read_foretelling(json);
   if (json.has("pictures"))
     for (const ResultReader& picture : json.at("pictures").items()) results.pictures.push_back(read_picture(picture));
+  if (json.has("on_log")) results.on_log = std::make_shared<const LogResults>(read_log_results(json.at("on_log")));
   return results;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -114,6 +115,8 @@ struct ResultPicture {
   double assigned_within = kNaN;  ///< tracks belong to targets not by their numbers but within so much of them
 };
 
+struct LogResults;
+
 struct Results {
   std::string file;  ///< what it is called
   std::string study, version;
@@ -126,6 +129,7 @@ struct Results {
   std::vector<Set> sets;
   std::vector<ResultPicture> pictures;
   std::vector<ForetellingResults> foretelling;  ///< of a log that `track --foretell` scored
+  std::shared_ptr<const LogResults> on_log;     ///< what the log says without its truth; none of what is no log
 };
 
 class ResultReader;

@@ -278,6 +278,7 @@ std::vector<Plot> study_plots(const Results& results, const std::string& id) {
   add(metric_plots(results.all, id));
   add(run_plots(results.all, id));
   add(picture_plots(results, id));
+  if (results.on_log) add(log_plots(*results.on_log, id));
   add(correction_plots(results.all, id));
   return plots;
 }

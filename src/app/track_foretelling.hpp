@@ -3,16 +3,12 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "app/tracked_log.hpp"
 #include "truebearing/evaluation/foretelling.hpp"
-#include "truebearing/recording/recording.hpp"
 
 namespace truebearing {
-
-/// Logs that are kept, each with the number that tells its tracks from others'.
-using KeptLogs = std::vector<std::pair<int, Recording>>;
 
 struct ForetoldLog {
   int number;

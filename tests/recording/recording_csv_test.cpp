@@ -402,6 +402,26 @@ TEST(RecordingCsv, MisspeltColumnIsNotLostSilently) {
                 AllOf(HasSubstr(misspelt), HasSubstr("did you mean \"" + meant + "\"")));
 }
 
+TEST(RecordingCsv, MisspeltTruthIsNoComponentOfItsOwn) {
+  const std::string measured = "time_s,east_m,north_m,";
+  for (const auto& [misspelt, meant] :
+       std::vector<std::pair<std::string, std::string>>{{"truth_eas_m", "truth_east_m"},
+                                                        {"truth_est_km", "truth_east_m"},
+                                                        {"truth_nort_m", "truth_north_m"},
+                                                        {"truth_velocty_mps", "truth_velocity_mps"},
+                                                        {"truth_frequncy_hz", "truth_frequency_hz"}})
+    EXPECT_THAT(error_of(measured + misspelt + "\n0,1,2,3\n"),
+                AllOf(HasSubstr(misspelt + ": is no known column"), HasSubstr("did you mean \"" + meant + "\"")));
+  EXPECT_THAT(error_of(measured + "truth_north\n0,1,2,3\n"),
+              AllOf(HasSubstr("truth_north: names no known unit"), HasSubstr("truth_north=truth_north_m")));
+  // Names that are near to nothing, to what is there already, or to what has another unit, are one's own.
+  for (const char* own : {"truth_depth_m", "truth_east_m,truth_last_m", "truth_east_mps2"}) {
+    const std::string columns = own;
+    const std::string cells = columns.find(',') == std::string::npos ? "3" : "3,4";
+    EXPECT_EQ(error_of(measured + columns + "\n0,1,2," + cells + "\n"), "no error") << own;
+  }
+}
+
 TEST(RecordingCsv, ColumnsMayBeGivenOtherNames) {
   std::istringstream stream("t,rng,baering_deg\n0,2,7\n1,3,8\n");
   const RecordingOptions options{.columns = {{"t", "time_s"}, {"rng", "range_km"}, {"baering_deg", ""}}};

@@ -6,6 +6,7 @@
 
 #include "truebearing/core/bounded.hpp"
 #include "truebearing/core/printable.hpp"
+#include "truebearing/core/suggestion.hpp"
 #include "truebearing/recording/log_columns.hpp"
 #include "truebearing/recording/log_units.hpp"
 
@@ -115,9 +116,12 @@ class LayoutReader {
     NameAndUnit name = apart(std::string_view(header).substr(is_truth ? kTruthPrefix.size() : 0));
     if (!name.unit) {
       if (name_without_unit(header, column)) return;
-      if (is_truth)
+      if (is_truth) {
+        const std::string meant = meant_name(csv_, column.index, truth_names());
         fault(column.index, "names no known unit",
-              fmt::format("a name that ends in {}; --columns {}=truth_east_m gives it one", all_suffixes(), header));
+              fmt::format("a name that ends in {}; --columns {}={} gives it one", all_suffixes(), header,
+                          meant.empty() ? "truth_east_m" : meant));
+      }
       return;
     }
     if (name.unit->dimension == Dimension::time) return;
@@ -258,6 +262,37 @@ class LayoutReader {
                                 "sensor_up_m, sensor_east_mps, sensor_north_mps with it");
   }
 
+  // What a truth is of as a rule, with the prefix.
+  static std::vector<std::string> truth_names() {
+    std::vector<std::string> names;
+    for (const StateSpace* space : {&line_space(), &space_space(), &plane_frequency_space()})
+      for (const std::string& component : space->components) {
+        std::string name(kTruthPrefix);
+        name += component;
+        if (!contains(names, name)) names.push_back(std::move(name));
+      }
+    return names;
+  }
+
+  // One of its own that is nearly one of those, of the same dimension, which the log lacks: "truth_eas_m".
+  void look_for_misspelt_truth(const std::vector<std::string>& given) {
+    for (const std::size_t index : columns_of(ColumnRole::truth)) {
+      const std::string &quantity = layout_.columns[index].quantity, &header = csv_.header()[index];
+      const NameAndUnit name = apart(quantity);
+      if (!name.unit || contains(truth_names(), kTruthPrefix.data() + quantity)) continue;
+      std::vector<std::string> lacking;
+      for (const std::string& known : truth_names()) {
+        const std::string component = known.substr(kTruthPrefix.size());
+        if (!contains(given, component) && apart(component).unit->dimension == name.unit->dimension)
+          lacking.push_back(component);
+      }
+      if (const std::string meant = near_miss(quantity, lacking); !meant.empty())
+        fault(index, "is no known column",
+              fmt::format("did you mean \"truth_{}\"? --columns {}=truth_{}, or {}= to leave it out", meant, header,
+                          meant, header));
+    }
+  }
+
   void find_truth() {
     std::vector<std::string> given;
     for (const std::size_t index : columns_of(ColumnRole::truth)) {
@@ -265,6 +300,7 @@ class LayoutReader {
       if (given.size() <= kMaxDimension && !contains(given, quantity)) given.push_back(quantity);
     }
     if (given.empty()) return;
+    look_for_misspelt_truth(given);
     if (given.size() > kMaxDimension) {
       layout_.faults.emplace_back(csv_.name(), "has too many truth_ columns", fmt::format("at most {}", kMaxDimension));
       return;

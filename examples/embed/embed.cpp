@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // A corrected tracker in a program of your own. Reads lines "time_s position_m" from standard input:
-//     embed data/studies/radar_1d_family.toml < measurements.txt
+//     embed radar_1d_family < measurements.txt
 #include <cmath>
 #include <iostream>
 
 #include "truebearing/study/study.hpp"
 
 int main(int argc, char** argv) try {
-  const auto study = truebearing::Study::load(argc > 1 ? argv[1] : "data/studies/radar_1d_family.toml");
+  const auto study = truebearing::Study::load(argc > 1 ? argv[1] : "radar_1d_family");
   const auto tracker = study.make_tracker("nfnn");
   truebearing::Measurement measurement;
   measurement.z.resize(1);

@@ -2,37 +2,11 @@
 #include "app/data_folder.hpp"
 
 #include <optional>
-#include <system_error>
 
 #include "truebearing/core/error.hpp"
+#include "truebearing/study/shipped_file.hpp"
 
 namespace truebearing {
-namespace {
-
-std::optional<std::filesystem::path> find_data_folder() {
-  std::error_code failure;
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", failure);
-  for (const std::filesystem::path& folder : {program.parent_path().parent_path(), program.parent_path()})
-    if (std::filesystem::is_directory(folder / "share/truebearing/data", failure)) return folder / "share/truebearing";
-  return std::nullopt;
-}
-
-// The file of that name, else the one in a folder of the data that came with the program, else the one that is not
-// there.
-std::string named_or_shipped(const std::string& name, const std::string& folder) {
-  std::error_code failure;
-  if (std::filesystem::path(name).has_parent_path() || std::filesystem::exists(name, failure)) return name;
-  const std::optional<std::filesystem::path> shared = find_data_folder();
-  if (!shared) return name;
-  for (const char* extension : {"", ".toml"}) {
-    const std::filesystem::path shipped = *shared / "data" / folder / (name + extension);
-    if (std::filesystem::is_regular_file(shipped, failure)) return shipped.string();
-  }
-  return name;
-}
-
-}  // namespace
-
 std::filesystem::path data_folder() {
   const std::optional<std::filesystem::path> folder = find_data_folder();
   if (!folder)

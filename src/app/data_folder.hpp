@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What comes with the program: share/truebearing/data with scenarios and studies, share/truebearing/models.
+// What comes with the program, as the command line takes it by name (study/shipped_file.hpp).
 #pragma once
 
 #include <filesystem>
@@ -9,8 +9,7 @@
 
 namespace truebearing {
 
-/// share/truebearing above the program's folder, as installed, or beside the program, as built. Throws InputError where
-/// there is none.
+/// find_data_folder(). Throws InputError where there is none.
 std::filesystem::path data_folder();
 
 /// The file of that name, or else that of the study of that name, with or without .toml, that comes with the program.

@@ -19,6 +19,7 @@ using ::testing::AllOf;
 using testing::error_message;
 using ::testing::HasSubstr;
 using testing::kStudy;
+using ::testing::Not;
 using testing::replaced;
 using testing::TemporaryFolder;
 using testing::write_study;
@@ -109,9 +110,20 @@ TEST(Study, MissingKeysAndFilesAreNamed) {
   EXPECT_THAT(refusal("name = \"small\"\n", ""), HasSubstr("name: is missing"));
   EXPECT_THAT(refusal("scenario = \"scenario.toml\"", "scenario = \"nowhere.toml\""), HasSubstr("nowhere.toml"));
   EXPECT_THAT(refusal("kind = \"kalman\"\n", ""), HasSubstr("trackers.plain"));
-  EXPECT_THAT(refusal("base = \"plain\"\n", ""), HasSubstr("base: is missing"));
+  EXPECT_THAT(refusal("base = \"plain\"\n", ""), HasSubstr("base: is missing; valid: text in quotes"));
+  EXPECT_THAT(refusal("model = \"small.nfnn.json\"\n", "modl = \"small.nfnn.json\"\n"),
+              HasSubstr("model: is missing; valid: text in quotes (did you mean it by \"modl\"?)"));
   EXPECT_THAT(refusal("model = \"small.nfnn.json\"\n", ""), HasSubstr("model"));
   EXPECT_THAT(error_message([] { Study::load("nowhere.toml"); }), HasSubstr("nowhere.toml"));
+}
+
+TEST(Study, IsFoundByNameWhereNoFileHasIt) {
+  const std::filesystem::path shipped = Study::load("radar_1d_family").path();
+  EXPECT_TRUE(std::filesystem::is_regular_file(shipped));
+  EXPECT_EQ(shipped, Study::load("radar_1d_family.toml").path());
+  EXPECT_EQ(Study::load(shipped).path(), shipped) << "a path is taken as it is";
+  EXPECT_THAT(error_message([] { Study::load("nowhere/radar_1d_family"); }), HasSubstr("nowhere/radar_1d_family"));
+  EXPECT_THAT(error_message([] { Study::load("radar_1d_famly"); }), HasSubstr("radar_1d_famly: cannot be opened"));
 }
 
 TEST(Study, NamesOfTrackersMustBeThere) {

@@ -7,6 +7,7 @@
 #include "truebearing/io/file.hpp"
 #include "truebearing/study/configuration_text.hpp"
 #include "truebearing/study/published_rows.hpp"
+#include "truebearing/study/shipped_file.hpp"
 #include "truebearing/tracker/step_log_scenario.hpp"
 
 namespace truebearing {
@@ -39,8 +40,8 @@ std::vector<double> clock_offsets_of(const toml::table* sensors) {
 
 Study Study::load(const std::filesystem::path& path) {
   Study study;
-  study.path_ = path;
-  study.read(read_study_file(path));
+  study.path_ = named_or_shipped(path.string(), "studies");
+  study.read(read_study_file(study.path_));
   return study;
 }
 

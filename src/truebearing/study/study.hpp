@@ -27,7 +27,7 @@ using CorrectionModels = std::map<std::string, std::shared_ptr<const CorrectionM
 
 class Study {
  public:
-  /// Reads and checks a study file, and makes every tracker that needs no tuned parameters once. Throws InputError.
+  /// Reads and checks a study file, or one that comes with the program by its name; makes each tracker once. Throws InputError.
   static Study load(const std::filesystem::path& path);
 
   const std::string& name() const { return name_; }

@@ -28,6 +28,14 @@ std::string separator_name(char separator) {
   return separator == '\t' ? "tab" : std::string(1, separator);
 }
 
+void print_times(const LogReport& report) {
+  fmt::print("\ntimes from {} to {} s; period {} s (least {}, greatest {}); {} gaps", number(report.first_s),
+             number(report.last_s), number(report.median_period_s), number(report.least_period_s),
+             number(report.greatest_period_s), report.gaps);
+  if (report.gaps > 0) fmt::print(", the longest after {} s", number(report.longest_gap_after_s));
+  fmt::print("\n{} repeated rows, {} late rows\n", report.repeated, report.late);
+}
+
 void print_report(const LogReport& report) {
   fmt::print("{}: {} rows", shortened_from_front(printable(report.log), 120), report.rows);
   if (report.targets > 0) fmt::print(" of {} targets", report.targets);
@@ -41,11 +49,10 @@ void print_report(const LogReport& report) {
   }
   fmt::print("{}", aligned(table));
   if (report.columns.size() > kMostColumns) fmt::print("and {} columns more\n", report.columns.size() - kMostColumns);
-  fmt::print("\ntimes from {} to {} s; period {} s (least {}, greatest {}); {} gaps", number(report.first_s),
-             number(report.last_s), number(report.median_period_s), number(report.least_period_s),
-             number(report.greatest_period_s), report.gaps);
-  if (report.gaps > 0) fmt::print(", the longest after {} s", number(report.longest_gap_after_s));
-  fmt::print("\n{} repeated rows, {} late rows\n", report.repeated, report.late);
+  if (std::isnan(report.first_s))
+    fmt::print("\nno times\n");
+  else
+    print_times(report);
   for (const std::string& oddity : report.oddities)
     fmt::print("odd: {}\n", shortened(printable(oddity), kMostShown - 5));
   for (const std::string& fault : report.faults) fmt::print("fault: {}\n", fault);

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fmt/format.h>
 
 #include "tests/support/temporary_folder.hpp"
@@ -49,6 +50,16 @@ TEST(LogCheck, SaysWhoTakesNoticeOfAltitudes) {
   EXPECT_EQ(report.columns[3].taken_for, "height, to studies in space alone: altitude_m");
   EXPECT_EQ(report.columns[3].unit, "ft");
   EXPECT_EQ(report.columns[3].greatest, 1029.0);
+}
+
+TEST(LogCheck, CountsRowsThatHaveNoTime) {
+  const LogReport report = check("range_m,bearing_deg\n1,2\n3,4\n5,6\n");
+  EXPECT_FALSE(report.is_usable());
+  EXPECT_EQ(report.rows, 3u);
+  EXPECT_TRUE(std::isnan(report.first_s));
+  EXPECT_TRUE(std::isnan(report.last_s));
+  EXPECT_EQ(report.repeated + report.late + report.gaps, 0u);
+  EXPECT_THAT(report.faults, ::testing::ElementsAre(HasSubstr("has no column \"time_s\"")));
 }
 
 TEST(LogCheck, CountsGapsAndRepeatedRows) {

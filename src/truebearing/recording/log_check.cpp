@@ -88,8 +88,9 @@ class LogSurvey {
   void read_rows() try {
     constexpr std::size_t kMostBadTimes = 100;
     std::size_t bad_times = 0;
-    while (time_ && csv_.next()) {
+    while (csv_.next()) {
       ++report_.rows;
+      if (!time_) continue;
       for (const LogColumn& column : columns_)
         if (holds_numbers(column) && column.role != ColumnRole::left_out && column.role != ColumnRole::time)
           count_cell(column.index);
@@ -145,7 +146,7 @@ class LogSurvey {
 
   void summarise_times() {
     report_.targets = target_ ? targets_.size() : 0;
-    if (report_.rows == 0) report_.first_s = report_.last_s = kNaN;
+    if (report_.rows == 0 || !time_) report_.first_s = report_.last_s = kNaN;
     if (periods_s_.empty()) {
       report_.median_period_s = report_.least_period_s = report_.greatest_period_s = kNaN;
       return;

@@ -12,6 +12,7 @@ namespace {
 using ::testing::AllOf;
 using testing::error_message;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 /// The message of what `read` does with a table of this text.
 template <typename Read>
@@ -89,6 +90,29 @@ TEST(TableReader, OutOfRangeSaysTheRange) {
 
 TEST(TableReader, MissingKeyIsNamed) {
   EXPECT_THAT(error_of("b = 1", [](TableReader& table) { table.number("a"); }), HasSubstr("a: is missing"));
+}
+
+TEST(TableReader, MissingKeySaysWhatWouldBeValid) {
+  const auto ends_in = [](const std::string& valid) { return ::testing::EndsWith("is missing; valid: " + valid); };
+  EXPECT_THAT(error_of("", [](TableReader& table) { table.number("a", kPositive); }), ends_in("a number > 0"));
+  EXPECT_THAT(error_of("", [](TableReader& table) { table.integer("a", 1, 9); }), ends_in("an integer in [1, 9]"));
+  EXPECT_THAT(error_of("", [](TableReader& table) { table.text("a"); }), ends_in("text in quotes"));
+  EXPECT_THAT(error_of("", [](TableReader& table) { table.choice("a", {"b", "c"}); }), ends_in("one of \"b\", \"c\""));
+  EXPECT_THAT(error_of("", [](TableReader& table) { table.numbers("a", 2, kNonNegative); }),
+              ends_in("2 numbers, each a number >= 0"));
+  EXPECT_THAT(error_of("", [](TableReader& table) { table.texts("a"); }), ends_in("an array of texts"));
+  EXPECT_THAT(error_of("", [](TableReader& table) { table.table("a"); }), ends_in("a table"));
+}
+
+TEST(TableReader, MissingKeyNamesTheOneThatItWasMeantBy) {
+  const auto period = [](TableReader& table) {
+    table.has("periods");
+    table.number("period_s", kPositive);
+  };
+  EXPECT_THAT(error_of("perod_s = 1", period), HasSubstr("a number > 0 (did you mean it by \"perod_s\"?)"));
+  EXPECT_THAT(error_of("Period-s = 1", period), HasSubstr("did you mean it by \"Period-s\"?"));
+  EXPECT_THAT(error_of("sigma_m = 1", period), Not(HasSubstr("did you mean")));
+  EXPECT_THAT(error_of("periods = 1", period), Not(HasSubstr("did you mean"))) << "it is a key of its own";
 }
 
 TEST(TableReader, ChoiceListsTheValidNames) {

@@ -17,6 +17,10 @@ namespace {
 constexpr std::size_t kMaxTomlBytes = std::size_t{1} << 20;
 constexpr int kMaxDepth = 64;
 
+// What is valid where a key holds no number.
+constexpr const char *kBoolean = "true or false", *kText = "text in quotes", *kTexts = "an array of texts",
+                     *kTable = "a table", *kTables = "an array of tables";
+
 std::string type_name(const toml::node& node) {
   switch (node.type()) {
     case toml::node_type::string:
@@ -184,15 +188,18 @@ bool TableReader::has(const std::string& key) {
   return node(key) != nullptr;
 }
 
-const toml::node& TableReader::required(const std::string& key) {
+const toml::node& TableReader::required(const std::string& key, const std::string& valid) {
   const toml::node* found = node(key);
-  if (!found) throw error(key, "is missing");
-  return *found;
+  if (found) return *found;
+  for (const std::string& other : keys())  // which nobody has asked for yet
+    if (!asked_.contains(other) && !near_miss(other, {key}).empty())
+      throw error(key, "is missing", fmt::format("{} (did you mean it by \"{}\"?)", valid, other));
+  throw error(key, "is missing", valid);
 }
 
 double TableReader::number(const std::string& key, Range range) {
   note(*this, key, "number", describe(range));
-  const toml::node& found = required(key);
+  const toml::node& found = required(key, describe(range));
   const auto value = found.value<double>();
   if (!value || found.is_boolean()) throw error(key, "is " + type_name(found), describe(range));
   if (!contains(range, *value)) throw error(key, fmt::format("is {}", *value), describe(range));
@@ -208,7 +215,7 @@ double TableReader::number_or(const std::string& key, double fallback, Range ran
 std::int64_t TableReader::integer(const std::string& key, std::int64_t low, std::int64_t high) {
   const std::string valid = integer_in(low, high);
   note(*this, key, "integer", valid);
-  const toml::node& found = required(key);
+  const toml::node& found = required(key, valid);
   const auto* value = found.as_integer();
   if (!value) throw error(key, "is " + type_name(found), valid);
   if (value->get() < low || value->get() > high) throw error(key, fmt::format("is {}", value->get()), valid);
@@ -226,16 +233,17 @@ bool TableReader::boolean_or(const std::string& key, bool fallback) {
   note(*this, key, "true or false");
   note_default(*this, key, fallback ? "true" : "false");
   if (!has(key)) return fallback;
-  const auto* value = required(key).as_boolean();
-  if (!value) throw error(key, "is " + type_name(required(key)), "true or false");
+  const toml::node& found = required(key, kBoolean);
+  const auto* value = found.as_boolean();
+  if (!value) throw error(key, "is " + type_name(found), kBoolean);
   return value->get();
 }
 
 std::string TableReader::text(const std::string& key) {
   note(*this, key, "text");
-  const toml::node& found = required(key);
+  const toml::node& found = required(key, kText);
   const auto* value = found.as_string();
-  if (!value) throw error(key, "is " + type_name(found), "text in quotes");
+  if (!value) throw error(key, "is " + type_name(found), kText);
   return value->get();
 }
 
@@ -247,6 +255,7 @@ std::string TableReader::text_or(const std::string& key, std::string fallback) {
 
 std::string TableReader::choice(const std::string& key, const std::vector<std::string>& valid) {
   note_choice(*this, key, valid);
+  static_cast<void>(required(key, fmt::format("one of \"{}\"", fmt::join(valid, "\", \""))));
   std::string value = text(key);
   if (std::find(valid.begin(), valid.end(), value) == valid.end())
     throw error(key, "is \"" + value + "\"", suggestion(value, valid));
@@ -263,7 +272,7 @@ std::string TableReader::choice_or(const std::string& key, const std::vector<std
 std::vector<double> TableReader::numbers(const std::string& key, int size, Range range) {
   const std::string count = size < 0 ? "an array, each " : fmt::format("{} numbers, each ", size);
   note(*this, key, "numbers", count + describe(range));
-  const toml::node& found = required(key);
+  const toml::node& found = required(key, count + describe(range));
   std::vector<double> values;
   const auto take = [&](const toml::node& element) {
     const auto value = element.value<double>();
@@ -282,13 +291,13 @@ std::vector<double> TableReader::numbers(const std::string& key, int size, Range
 
 std::vector<std::string> TableReader::texts(const std::string& key) {
   note(*this, key, "texts");
-  const toml::node& found = required(key);
+  const toml::node& found = required(key, kTexts);
   const auto* array = found.as_array();
-  if (!array) throw error(key, "is " + type_name(found), "an array of texts");
+  if (!array) throw error(key, "is " + type_name(found), kTexts);
   std::vector<std::string> values;
   for (const toml::node& element : *array) {
     const auto* value = element.as_string();
-    if (!value) throw error(key, "holds " + type_name(element), "an array of texts");
+    if (!value) throw error(key, "holds " + type_name(element), kTexts);
     values.push_back(value->get());
   }
   return values;
@@ -309,9 +318,9 @@ SharedTable TableReader::own_inside(const std::string& key, const toml::table& t
 
 TableReader TableReader::table(const std::string& key) {
   note(*this, key, "table");
-  const toml::node& found = required(key);
+  const toml::node& found = required(key, kTable);
   const auto* sub = found.as_table();
-  if (!sub) throw error(key, "is " + type_name(found), "a table");
+  if (!sub) throw error(key, "is " + type_name(found), kTable);
   return inside(key, *sub, path_.empty() ? key : path_ + "." + key);
 }
 
@@ -325,12 +334,13 @@ std::vector<TableReader> TableReader::tables(const std::string& key) {
   note(*this, key, "tables");
   std::vector<TableReader> readers;
   if (!has(key)) return readers;
-  const auto* array = required(key).as_array();
-  if (!array) throw error(key, "is " + type_name(required(key)), "an array of tables");
+  const toml::node& found = required(key, kTables);
+  const auto* array = found.as_array();
+  if (!array) throw error(key, "is " + type_name(found), kTables);
   std::size_t index = 0;
   for (const toml::node& element : *array) {
     const auto* sub = element.as_table();
-    if (!sub) throw error(key, "holds " + type_name(element), "an array of tables");
+    if (!sub) throw error(key, "holds " + type_name(element), kTables);
     readers.push_back(inside(key, *sub, fmt::format("{}{}{}[{}]", path_, path_.empty() ? "" : ".", key, index++)));
   }
   return readers;

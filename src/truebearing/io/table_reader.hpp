@@ -75,7 +75,8 @@ class TableReader {
   std::filesystem::path resolve(const std::string& relative) const;
 
  private:
-  const toml::node& required(const std::string& key);
+  /// valid: what an error says would be.
+  const toml::node& required(const std::string& key, const std::string& valid);
   TableReader inside(const std::string& key, const toml::table& table, std::string path) const;
   SharedTable own_inside(const std::string& key, const toml::table& table) const;
   std::string where(const std::string& key) const;

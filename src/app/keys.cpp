@@ -188,6 +188,21 @@ bool is_of(const std::string& table, const std::string& name) {
   return ("." + table + ".").find("." + name + ".") != std::string::npos;
 }
 
+// Tables that only that kind has, as the modes of an imm.
+std::vector<std::string> tables_only_of(const std::string& kind, const KeySurvey::Tables& tables) {
+  std::vector<std::string> own;
+  for (const auto& [table, keys] : tables)
+    for (const auto& [key, entry] : keys)
+      if (entry.kinds == std::set<std::string>{kind} && kinds_of(keys).size() > 1 && tables.contains(table + "." + key))
+        own.push_back(table + "." + key);
+  return own;
+}
+
+bool is_within(const std::string& table, const std::vector<std::string>& parents) {
+  return std::any_of(parents.begin(), parents.end(),
+                     [&](const std::string& parent) { return (table + ".").starts_with(parent + "."); });
+}
+
 void print_keys(const KeysArguments& arguments) {
   const KeySurvey::Tables tables = surveyed_tables();
   const std::map<std::string, std::string> meanings = meanings_of(tables);
@@ -202,10 +217,12 @@ void print_keys(const KeysArguments& arguments) {
         "tracker, `[trackers.NAME]`; `scenario` is a table of the study or a file of its own. A\ndistribution is "
         "`{{ uniform = [low, high] }}`, `{{ normal = [mean, standard deviation] }}`, `{{ log_uniform = [low, high] "
         "}}`\nor `{{ choice = [a, b] }}`. `only of`: the kinds or models that have the key, where not all do.\n");
+  const std::vector<std::string> own = tables_only_of(kind, tables);
   for (const auto& [table, keys] : tables) {
+    const bool is_whole = kind.empty() || is_of(table, kind) || is_within(table, own);
     Keys shown;
     for (const auto& [key, entry] : keys)
-      if (kind.empty() || is_of(table, kind) || entry.kinds.contains(kind)) shown.emplace(key, entry);
+      if (is_whole || entry.kinds.contains(kind)) shown.emplace(key, entry);
     if (shown.empty()) continue;
     (arguments.markdown ? print_markdown : print_text)(table, shown, meanings, kinds_of(keys));
   }

@@ -52,6 +52,10 @@ TEST(Keys, KindOfTrackerPrintsWhatItTakes) {
   EXPECT_THAT(printed.out,
               AllOf(HasSubstr("[tracker]"), HasSubstr("\n  modes: "), HasSubstr("\n  transition: "),
                     HasSubstr("; of imm\n"), Not(HasSubstr("\n  particles: ")), Not(HasSubstr("\n  base: "))));
+  // And what stands in the tables that only it has.
+  EXPECT_THAT(printed.out, AllOf(HasSubstr("[tracker.modes]"), HasSubstr("\n  turn_rates_degps"),
+                                 HasSubstr("[tracker.modes.vertical]"), HasSubstr("[tracker.transition]"),
+                                 Not(HasSubstr("[tracker.start]"))));
 }
 
 TEST(Keys, MistypedTableIsGivenTheNearest) {

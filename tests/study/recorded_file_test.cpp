@@ -59,6 +59,16 @@ TEST_F(RecordedFileTest, StudyIsComparedOnTheFlightsThatItLists) {
   EXPECT_EQ(study.scenario().note(), "");
 }
 
+TEST_F(RecordedFileTest, NothingMayStandBesideTheNameOfOne) {
+  folder_.write("one.csv", flight(25, 45));
+  folder_.write("folder/two.csv", flight(30, -45));
+  EXPECT_THAT(error_of(replaced(kPlaneStudy, "one = \"one.csv\"",
+                                "one = { scenario = \"one.csv\", steps = 5, period_s = 2.0 }")),
+              AllOf(HasSubstr("sets.one."), HasSubstr("stands beside a recorded track"), HasSubstr("\"one.csv\" alone"),
+                    HasSubstr("steps"), HasSubstr("period_s")));
+  EXPECT_EQ(error_of(replaced(kPlaneStudy, "one = \"one.csv\"", "one = { scenario = \"one.csv\" }")), "no error");
+}
+
 TEST_F(RecordedFileTest, SigmaIsReportedWhereTheSimulatedSensorReportsIt) {
   folder_.write("one.csv", flight(25, 45));
   const Study study = load(replaced(kPlaneStudy, "sensor = { position_sigma_m = 50.0",

@@ -137,6 +137,13 @@ ChangedScenario read_changed_scenario(TableReader& table, const std::string& key
   if (reader.has("scenario")) changed.file = reader.resolve(reader.text("scenario"));
   toml::table changes = *reader.raw();
   changes.erase("scenario");
+  if (changed.is_recorded() && !changes.empty()) {
+    std::vector<std::string> beside = reader.keys();
+    std::erase(beside, "scenario");
+    throw reader.error(
+        beside.front(), "stands beside a recorded track, which is taken as it is",
+        fmt::format("\"{}\" alone, without {}", changed.file.filename().string(), fmt::join(beside, ", ")));
+  }
   changed.changes = std::make_shared<const toml::table>(std::move(changes));
   return changed;
 }

@@ -9,16 +9,20 @@
 A marker names a study, what stands in each column and in each row:
 
     <!-- table: STUDY
-    columns: HEADING = FIGURE | HEADING = FIGURE of TRACKER @ STUDY/SET
-    rows: TRACKER | LABEL = TRACKER @ STUDY/SET
+    columns: HEADING = FIGURE | HEADING = FIGURE of TRACKER @ STUDY/SET + FIGURE
+    rows: TRACKER | LABEL = TRACKER @ STUDY/SET | LABEL = TRACKER / REFERENCE
     -->
     <!-- end of table -->
 
+A line `runs: NAME = STUDY OPTIONS | ...` before the columns lets NAME stand for a study that is run with other options than
+its own, such as `--runs 1000` or `--truth LOG.csv`. A log is looked for in the folders LOGS; a table of one that is in
+none of them stays as it is.
+
 FIGURE is `rmse QUANTITY` and `metric NAME` (each with its standard error), `value NAME NAME...` (metrics and quantities' RMSE
 without), `percent NAME...`, `root NAME` (of a square in dB), `over TRACKER NAME NAME...` (each over that of the tracker or
-bound), `gain FROM TO NAME NAME...` (share of the way between two trackers), `ratio` (to plain, each quantity), `nees` or
+bound; `over / NAME...`: over that of the row's REFERENCE), `gain FROM TO NAME NAME...` (share of the way between two trackers), `ratio` (to plain, each quantity), `nees` or
 `coverage`. NAME:600 is the metric at 600 s. A row may also be one of the study's bounds or published ones, or `@ STUDY/SET`
-alone where the columns name the trackers; its study goes before the column's.
+alone where the columns name the trackers; its study goes before the column's, to which `@ /SET` of a column adds a set.
 """
 import json
 import math
@@ -29,8 +33,13 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 DOCUMENT = ROOT / "docs" / "results.md"
+LOGS = [ROOT / "data" / "real", ROOT.parent / "shared" / "data" / "real"]
 DECIMALS = {"dB": 2, "runs": 0}
-MARKER = re.compile(r"(<!-- table: (\S+)\ncolumns: (.+)\nrows: (.+)\n-->\n)((?:\|.*\n)+)(<!-- end of table -->)")
+MARKER = re.compile(r"(<!-- table: (\S+)\n(?:runs: (.+)\n)?columns: (.+)\nrows: (.+)\n-->\n)((?:\|.*\n)+)(<!-- end of table -->)")
+
+
+class LogIsNotHere(Exception):
+    """Of a table whose study runs on a log that is no part of the project."""
 
 
 def figure(value, decimals=None):
@@ -73,6 +82,7 @@ def named(tracker, name):
 
 def cell(results, row, what):
     kind, _, name = what.partition(" ")
+    row, _, reference_of_row = row.partition(" / ")
     if row in results["bounds"] and row not in results["trackers"]:
         tracker = results["bounds"][row]
         known = {*tracker, *(entry["name"] for entry in tracker["metrics"])}
@@ -86,6 +96,8 @@ def cell(results, row, what):
             return figure(10 ** (printed / 20))
         return "" if printed is None else f"{printed:g}"
     if kind == "rmse":
+        if name not in tracker["rmse"]:
+            return ""
         return with_error(tracker["rmse"][name], tracker["rmse_se"][name])
     if kind in ("metric", "value"):
         entries = [named(tracker, one) for one in name.split()]
@@ -97,6 +109,7 @@ def cell(results, row, what):
         return figure(10 ** (metric(tracker, name)["value"] / 20))
     if kind == "over":
         reference, *names = name.split()
+        reference = reference_of_row if reference == "/" else reference
         others = results["trackers"].get(reference) or results["bounds"][reference]
         return " / ".join(figure(named(tracker, one)["value"] / named(others, one)["value"]) for one in names)
     if kind == "gain":
@@ -114,18 +127,38 @@ def cell(results, row, what):
 
 
 class Studies:
-    """The results of each study, made once."""
+    """The results of each study, made once for each set of options."""
 
     def __init__(self, program, few_runs):
-        self.program, self.few_runs, self.made = program, few_runs, {}
+        self.program, self.few_runs, self.made, self.named = program, few_runs, {}, {}
+
+    def name(self, runs):
+        """Lets `NAME = STUDY OPTIONS | ...` stand for these in what follows."""
+        self.named = {name: run.split() for name, run in parts(runs)} if runs else {}
+
+    def arguments(self, name):
+        study, *options = self.named.get(name, [name])
+        for at, option in enumerate(options):
+            if at > 0 and options[at - 1] == "--truth":
+                found = [folder / option for folder in LOGS if (folder / option).exists()]
+                if not found:
+                    raise LogIsNotHere(option)
+                options[at] = str(found[0])
+        if self.few_runs:
+            for at in reversed([at for at, option in enumerate(options) if option == "--runs"]):
+                del options[at:at + 2]
+            options += ["--runs", "2"]
+        return [study, *options]
 
     def results(self, place):
-        study, _, part = place.partition("/")
-        if study not in self.made:
-            command = [self.program, "compare", f"data/studies/{study}.toml", "--quiet", "--json", "-"]
-            command += ["--runs", "2"] if self.few_runs else []
-            self.made[study] = json.loads(subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.PIPE).stdout)
-        return self.made[study]["sets"][part] if part else self.made[study]
+        name, _, part = place.partition("/")
+        arguments = self.arguments(name)
+        made = self.made.get(tuple(arguments))
+        if made is None:
+            command = [self.program, "compare", *arguments, "--quiet", "--json", "-"]
+            made = json.loads(subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.PIPE).stdout)
+            self.made[tuple(arguments)] = made
+        return made["sets"][part] if part else made
 
 
 def parts(text):
@@ -137,16 +170,23 @@ def parts(text):
     return pairs
 
 
+def column_cell(studies, study, column, tracker, own):
+    """own: the place that the row names, or nothing."""
+    cells = []
+    for what in column.split(" + "):
+        what, _, place = what.partition(" @ ")
+        name, _, other = what.partition(" of ")
+        where = (own or study) + place if place.startswith("/") else own or place or study
+        cells.append(cell(studies.results(where), other or tracker, name))
+    return ", ".join(one for one in cells if one)
+
+
 def table(studies, study, columns, rows):
     first = "set" if all(row.startswith("@ ") for _, row in rows) else "tracker"
     lines = [f"| {first} | " + " | ".join(heading for heading, _ in columns) + " |", "|---" * (len(columns) + 1) + "|"]
     for label, row in rows:
         tracker, _, own = row.rpartition("@ ") if "@ " in row else (row, "", "")
-        cells = []
-        for _, what in columns:
-            what, _, place = what.partition(" @ ")
-            name, _, other = what.partition(" of ")
-            cells.append(cell(studies.results(own or place or study), other or tracker.strip(), name))
+        cells = [column_cell(studies, study, what, tracker.strip(), own) for _, what in columns]
         if not any(cells):
             raise SystemExit(f"results.md: \"{row}\" is no tracker, no bound and no published row of {study}")
         lines.append(f"| {label} | " + " | ".join(cells) + " |")
@@ -170,8 +210,13 @@ def main():
     def written(match):
         nonlocal tables
         tables += 1
-        head, study, columns, rows, present, end = match.groups()
-        made = table(studies, study, parts(columns), parts(rows))
+        head, study, runs, columns, rows, present, end = match.groups()
+        studies.name(runs)
+        try:
+            made = table(studies, study, parts(columns), parts(rows))
+        except LogIsNotHere as log:
+            print(f"results.md: stays as it is, without {log}: {study}", file=sys.stderr)
+            return match.group()
         if shape(made) != shape(present):
             other.append(study)
         return head + made + end

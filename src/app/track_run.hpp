@@ -57,9 +57,11 @@ class TrackRun {
     contents_.guess |= measurement.guess.has_value();
     contents_.last_time_s = measurement.time_s;
     if (late_) {
-      return late_->step(trackers_, in_study_time(measurement), [&](const Measurement& taken, bool revised) {
+      const auto publish = [&](const Measurement& taken, bool revised) {
         for (std::size_t i = 0; i < all_.size(); ++i) take(i, taken.time_s + contents_.epoch_s, revised);
-      });
+      };
+      return contents_.epoch_s == 0.0 ? late_->step(trackers_, measurement, publish)
+                                      : late_->step(trackers_, in_study_time(measurement), publish);
     }
     if (contents_.epoch_s == 0.0)
       trackers_.step(measurement);

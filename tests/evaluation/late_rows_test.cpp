@@ -156,6 +156,30 @@ TEST(LateRows, OneMayComeBeforeTheFirst) {
   EXPECT_FALSE(buffer.step(late, at(6, 0), ignore));
 }
 
+// A window of a thousand rows, one in ten of which comes ten rows late: few more are run again than come after it.
+TEST(LateRows, OfAQuickSensorRunFewAgain) {
+  TrackerSet late = trackers(), sorted = trackers();
+  LateRows buffer(late, 1.0);
+  const auto ignore = [](const Measurement&, bool) {};
+  const auto at = [](int k) {
+    const double time_s = 0.001 * k;
+    return Measurement{
+        .time_s = time_s, .z = Eigen::Vector2d(100.0 * time_s, 30.0 * (k % 3)), .sigma = {}, .sensor = {}};
+  };
+  for (int k = 0; k < 4000; ++k) {
+    if (k % 10 != 0) buffer.step(late, at(k), ignore);
+    if (k >= 10 && k % 10 == 0) buffer.step(late, at(k - 10), ignore);
+  }
+  for (int k = 0; k < 3990; ++k) sorted.step(at(k));
+  for (int k = 3991; k < 4000; ++k) sorted.step(at(k));
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(late.records(i)[0].x, sorted.records(i)[0].x);
+    EXPECT_EQ(late.records(i)[0].P, sorted.records(i)[0].P);
+  }
+  EXPECT_EQ(buffer.taken(), 399u);
+  EXPECT_LT(buffer.again(), buffer.taken() * (10u + 1000u / 32u));
+}
+
 TEST(LateRows, TrackersThatCannotBeRunAgainAreRefused) {
   Ensemble ensemble;
   ensemble.add("fake", std::make_unique<testing::ScriptedTracker>());

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "truebearing/evaluation/late_rows.hpp"
 
-#include <algorithm>
 #include <iterator>
 #include <utility>
 
@@ -11,16 +10,16 @@
 namespace truebearing {
 namespace {
 
-// Of these a window has so many: running again begins at most a quarter of it too early. More of them cost every step.
-constexpr double kCheckpoints = 4.0;
+// Measurements between checkpoints, of which a window has at most so many. More of them cost every step, fewer every late
+// measurement.
+constexpr std::size_t kBetweenCheckpoints = 6;
+constexpr double kCheckpoints = 32.0;
 
-bool is_earlier(double time_s, const Measurement& other) {
-  return time_s < other.time_s;
-}
+constexpr std::size_t kFirstRing = 16;
 
 }  // namespace
 
-LateRows::LateRows(const TrackerSet& trackers, double keep_s) : keep_s_(keep_s) {
+LateRows::LateRows(const TrackerSet& trackers, double keep_s) : keep_s_(keep_s), ring_(kFirstRing) {
   if (!(keep_s > 0.0)) throw InputError("late rows", "are kept for no time", "seconds > 0");
   TrackerSet copy = trackers.fresh();
   if (const std::string name = copy.assign(trackers); !name.empty())
@@ -31,27 +30,28 @@ LateRows::LateRows(const TrackerSet& trackers, double keep_s) : keep_s_(keep_s) 
 
 bool LateRows::step(TrackerSet& trackers, const Measurement& measurement, const Publish& publish) {
   const double time_s = measurement.time_s;
-  if (kept_.empty() || !(time_s < kept_.back().time_s)) {
-    kept_.push_back(measurement);
-    run(trackers, first_ + kept_.size() - 1, publish, false);
-    forget(kept_.back().time_s - keep_s_);
+  const double newest_s = first_ == end_ ? -kInfinity : kept(end_ - 1).time_s;
+  if (!(time_s < newest_s)) {
+    insert(end_, measurement);
+    run(trackers, end_ - 1, publish, false);
+    forget(time_s - keep_s_);
     return true;
   }
-  const auto is_after = [](double at_s, const Checkpoint& checkpoint) { return at_s < checkpoint.time_s; };
-  const auto after = std::upper_bound(checkpoints_.begin(), checkpoints_.end(), time_s, is_after);
-  if (time_s < kept_.back().time_s - keep_s_ || after == checkpoints_.begin()) {
+  auto after = checkpoints_.end();
+  while (after != checkpoints_.begin() && time_s < std::prev(after)->time_s) --after;
+  if (time_s < newest_s - keep_s_ || after == checkpoints_.begin()) {
     ++too_late_;
     return false;
   }
-  const auto from = std::prev(after);
-  const std::size_t begin = from->next;
-  trackers.assign(from->trackers);
-  for (auto stale = after; stale != checkpoints_.end(); ++stale) spare_.push_back(std::move(stale->trackers));
-  checkpoints_.erase(after, checkpoints_.end());
-  const auto place = kept_.insert(std::upper_bound(kept_.begin(), kept_.end(), time_s, is_earlier), measurement);
-  const std::size_t number = first_ + static_cast<std::size_t>(place - kept_.begin());
+  const Checkpoint& from = *std::prev(after);
+  const std::size_t begin = from.next;
+  trackers.assign(from.trackers);
+  spare_.splice(spare_.end(), checkpoints_, after, checkpoints_.end());
+  std::size_t number = end_;
+  while (number > begin && time_s < kept(number - 1).time_s) --number;
+  insert(number, measurement);
   ++taken_;
-  for (std::size_t k = begin; k < first_ + kept_.size(); ++k) {
+  for (std::size_t k = begin; k < end_; ++k) {
     // Before the late one nothing changes.
     if (k < number)
       trackers.step(kept(k));
@@ -65,13 +65,16 @@ bool LateRows::step(TrackerSet& trackers, const Measurement& measurement, const 
 // Takes one of those that are kept, after a checkpoint where one is due.
 void LateRows::run(TrackerSet& trackers, std::size_t number, const Publish& publish, bool revised) {
   const Measurement& measurement = kept(number);
-  if (checkpoints_.empty() || measurement.time_s >= checkpoints_.back().time_s + keep_s_ / kCheckpoints) {
-    if (spare_.empty()) spare_.push_back(trackers.fresh());
+  if (checkpoints_.empty() || (number >= checkpoints_.back().next + kBetweenCheckpoints &&
+                               measurement.time_s >= checkpoints_.back().time_s + keep_s_ / kCheckpoints)) {
+    if (spare_.empty()) spare_.push_back({trackers.fresh(), 0, 0.0});
     // Nothing is before the first of them.
     const bool is_first = checkpoints_.empty() && number == 0;
-    checkpoints_.push_back({std::move(spare_.back()), number, is_first ? -kInfinity : measurement.time_s});
-    spare_.pop_back();
-    checkpoints_.back().trackers.assign(trackers);
+    checkpoints_.splice(checkpoints_.end(), spare_, std::prev(spare_.end()));
+    Checkpoint& checkpoint = checkpoints_.back();
+    checkpoint.next = number;
+    checkpoint.time_s = is_first ? -kInfinity : measurement.time_s;
+    checkpoint.trackers.assign(trackers);
   }
   trackers.step(measurement);
   publish(measurement, revised);
@@ -79,14 +82,20 @@ void LateRows::run(TrackerSet& trackers, std::size_t number, const Publish& publ
 
 // What no late one can ask for any more: all before the last checkpoint that stands at or before `before_s`.
 void LateRows::forget(double before_s) {
-  while (checkpoints_.size() > 1 && checkpoints_[1].time_s <= before_s) {
-    spare_.push_back(std::move(checkpoints_.front().trackers));
-    checkpoints_.pop_front();
+  while (checkpoints_.size() > 1 && std::next(checkpoints_.begin())->time_s <= before_s)
+    spare_.splice(spare_.end(), checkpoints_, checkpoints_.begin());
+  first_ = checkpoints_.front().next;
+}
+
+// Those from that number on move up.
+void LateRows::insert(std::size_t number, const Measurement& measurement) {
+  if (end_ - first_ == ring_.size()) {
+    std::vector<Measurement> larger(2 * ring_.size());
+    for (std::size_t k = first_; k < end_; ++k) larger[k & (larger.size() - 1)] = std::move(kept(k));
+    ring_.swap(larger);
   }
-  while (first_ < checkpoints_.front().next) {
-    kept_.pop_front();
-    ++first_;
-  }
+  for (std::size_t k = end_++; k > number; --k) kept(k) = std::move(kept(k - 1));
+  kept(number) = measurement;
 }
 
 }  // namespace truebearing

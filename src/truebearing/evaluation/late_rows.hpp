@@ -5,8 +5,8 @@
 #pragma once
 
 #include <cstddef>
-#include <deque>
 #include <functional>
+#include <list>
 #include <vector>
 
 #include "truebearing/evaluation/tracker_set.hpp"
@@ -38,13 +38,13 @@ class LateRows {
 
   void run(TrackerSet& trackers, std::size_t number, const Publish& publish, bool revised);
   void forget(double before_s);
-  const Measurement& kept(std::size_t number) const { return kept_[number - first_]; }
+  void insert(std::size_t number, const Measurement& measurement);
+  Measurement& kept(std::size_t number) { return ring_[number & (ring_.size() - 1)]; }
 
   double keep_s_;
-  std::deque<Measurement> kept_;  // by time
-  std::size_t first_ = 0;         // number of the first of them
-  std::deque<Checkpoint> checkpoints_;
-  std::vector<TrackerSet> spare_;  // of checkpoints that are no longer needed
+  std::vector<Measurement> ring_;              // a power of two; by time, number k at k modulo that
+  std::size_t first_ = 0, end_ = 0;            // numbers of those that are kept
+  std::list<Checkpoint> checkpoints_, spare_;  // by time; those that are no longer needed
   std::size_t taken_ = 0, too_late_ = 0, again_ = 0;
 };
 

@@ -26,14 +26,19 @@ TEST(RangeRate, StraightOnIsFilteredToTheBound) {
   ASSERT_TRUE(comparison.cramer_rao);
   for (const Metric& bound : comparison.cramer_rao->metrics) {
     if (bound.time_s != 60.0 || (bound.name != "position_rmse" && bound.name != "velocity_rmse")) continue;
-    for (const char* tracker : {"sequential", "ukf"}) {
+    for (const char* tracker : {"sequential", "ukf", "ekf_2", "sequential_2"}) {
       const Metric found = testing::metric(comparison, tracker, bound.name, 60.0);
       EXPECT_LT(found.value, 1.05 * bound.value + 2.0 * found.se) << tracker << " " << bound.name;
       EXPECT_GT(found.value, bound.value - 3.0 * found.se) << tracker << " " << bound.name;
     }
+    // The partner: at first order alone the extended filter is not.
+    EXPECT_GT(testing::metric(comparison, "ekf", bound.name, 60.0).value, 1.15 * bound.value) << bound.name;
     const Metric without = testing::metric(comparison, "without", bound.name, 60.0);
     EXPECT_GT(without.value, 1.2 * bound.value) << bound.name;
   }
+  for (const char* tracker : {"ekf_2", "sequential_2"})
+    EXPECT_NEAR(comparison.tracker(tracker)->nees, 4.0, 0.45) << tracker;
+  EXPECT_GT(comparison.tracker("ekf")->nees, 6.0);
 }
 
 TEST(RangeRate, HelpsEveryFilterOfTargetsThatTurn) {

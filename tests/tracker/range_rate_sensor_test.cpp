@@ -18,6 +18,10 @@ Measurement seen(const Eigen::Vector3d& z, const std::optional<SensorState>& sen
   return {.time_s = 0.0, .z = z, .sigma = {}, .sensor = sensor};
 }
 
+Measurement seen_at_rest() {
+  return seen({5000.0, 0.6, 0.0});
+}
+
 RangeBearingRateSensor polar(double correlation) {
   return {{50.0, 0.02, 1.0}, 1.0, {100.0, -50.0}, correlation};
 }
@@ -51,6 +55,50 @@ TEST(ConvertedRate, IsTheTwoUpdatesOneAfterTheOther) {
     EXPECT_LT((together.P() - P).norm(), 1e-9 * P.norm()) << rho;
     EXPECT_GT((x - between).tail<2>().norm(), 0.5) << "the range rate says something";
   }
+}
+
+// Against draws of what is left of a range rate without its first order: four standard errors of mean and variance.
+TEST(RangeRateCurvature, IsWhatTheSecondOrderMakesOfAnUncertainState) {
+  const RangeBearingRate<> seen = polar(0.0).model(seen_at_rest());
+  Eigen::Matrix4d P = Eigen::Vector4d(1e4, 4e4, 9e4, 16e4).asDiagonal();
+  P(0, 2) = P(2, 0) = 2e4;
+  P(1, 3) = P(3, 1) = -5e4;
+  const RangeRateCurvature found = range_rate_curvature(seen, kExpected, P);
+  const Eigen::Matrix4d root = P.llt().matrixL();
+  RandomStream random({5, Role::evaluation, 0}, StreamId::test);
+  constexpr int kDraws = 200000;
+  double sum = 0.0, squares = 0.0;
+  for (int i = 0; i < kDraws; ++i) {
+    const Eigen::Vector4d u(random.normal(), random.normal(), random.normal(), random.normal());
+    const Eigen::Vector4d d = root * u;
+    // Of d and -d together odd orders go out.
+    const double rest = 0.5 * (seen.h(kExpected + d)[2] + seen.h(kExpected - d)[2]) - seen.h(kExpected)[2];
+    sum += rest;
+    squares += rest * rest;
+  }
+  const double mean = sum / kDraws, variance = squares / kDraws - mean * mean;
+  EXPECT_NEAR(found.mean_mps, mean, 4.0 * std::sqrt(variance / kDraws) + 0.01 * std::abs(mean));
+  EXPECT_NEAR(found.variance_m2ps2, variance, 0.06 * variance) << "what is left is of the fourth order";
+  EXPECT_GT(found.variance_m2ps2, 50.0);
+  EXPECT_EQ(range_rate_curvature(seen, Eigen::Vector4d(100.0, -50.0, 3.0, 4.0), P).variance_m2ps2, 0.0);
+}
+
+// Each has the second order of what it linearises about, and its own errors beside it.
+TEST(RangeRateCurvature, IsTakenByBothFormsOfTheSensor) {
+  const Prediction expected{kExpected, Eigen::Vector4d(1e4, 4e4, 9e4, 16e4).asDiagonal()};
+  const Measurement measurement = seen({5100.0, 0.66, -11.0});
+  const RangeBearingRateSensor radar = polar(0.5);
+  const RangeBearingRate<> plain = radar.model(measurement);
+  const RangeRateCurvature curvature = range_rate_curvature(plain, kExpected, expected.P);
+  const SecondOrderRateSensor::Model model = SecondOrderRateSensor{radar}.model(measurement, expected);
+  EXPECT_NEAR(model.h(kExpected)[2] - plain.h(kExpected)[2], curvature.mean_mps, 1e-9);
+  EXPECT_NEAR(model.R()(2, 2) - plain.R()(2, 2), curvature.variance_m2ps2, 1e-9 * curvature.variance_m2ps2);
+  EXPECT_NEAR(model.R()(0, 2), plain.R()(0, 2), 1e-9) << "the second order has nothing in common with the range";
+  const PositionAndRate<2> first = ConvertedRateSensor{radar}.model(measurement, expected);
+  const PositionAndRate<2> second = ConvertedRateSensor{radar, true}.model(measurement, expected);
+  EXPECT_EQ(first.row, second.row);
+  EXPECT_GT(second.sigma_rate_mps, first.sigma_rate_mps);
+  EXPECT_LT(second.sigma_rate_mps, std::sqrt(model.R()(2, 2))) << "the position is known better by then";
 }
 
 TEST(ConvertedRate, WithoutNoiseIsTheTruth) {

@@ -101,12 +101,18 @@ RangeBearingRateSensor read_polar_rate(const Reading& reading) {
           read_correlation(reading.table)};
 }
 
+bool read_second_order(const Reading& reading) {
+  return reading.table.boolean_or("second_order", false);
+}
+
 std::unique_ptr<AnySensor> read_range_bearing_rate(const Reading& reading) {
-  return sensor_of(read_polar_rate(reading));
+  const RangeBearingRateSensor sensor = read_polar_rate(reading);
+  return read_second_order(reading) ? sensor_of(SecondOrderRateSensor{sensor}) : sensor_of(sensor);
 }
 
 std::unique_ptr<AnySensor> read_converted_rate(const Reading& reading) {
-  return sensor_of(ConvertedRateSensor{read_polar_rate(reading)});
+  const RangeBearingRateSensor sensor = read_polar_rate(reading);
+  return sensor_of(ConvertedRateSensor{sensor, read_second_order(reading)});
 }
 
 // A range rate, with the range before it or without.

@@ -5,11 +5,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 
 #include "truebearing/measurement/measured.hpp"
 #include "truebearing/measurement/measurement.hpp"
 #include "truebearing/measurement/range_bearing_rate.hpp"
+#include "truebearing/measurement/range_rate_curvature.hpp"
 #include "truebearing/tracker/start.hpp"
+#include "truebearing/tracker/step_record.hpp"
 
 namespace truebearing {
 
@@ -37,6 +40,36 @@ struct RangeBearingRateSensor {
         convert_range_bearing(measurement.z.head<2>(), here.sigma_range_m, here.sigma_bearing_rad, here.site_m);
     return {converted.position_m, converted.R_m2};
   }
+};
+
+/// The same for extended filters, with the second order of the range rate about what is expected
+/// (range_rate_curvature.hpp).
+struct SecondOrderRateSensor {
+  struct Model : RangeBearingRate<> {
+    double curvature_mps = 0.0;
+
+    Vector h(const State& x) const {
+      Vector z = RangeBearingRate<>::h(x);
+      z[2] += curvature_mps;
+      return z;
+    }
+  };
+  static constexpr bool kMeasuresPosition = false;
+
+  RangeBearingRateSensor polar;
+
+  Model model(const Measurement& measurement, const Prediction& expected) const {
+    RangeBearingRate<> seen = polar.model(measurement);
+    const RangeRateCurvature curvature =
+        range_rate_curvature(seen, expected.x.head<4>(), expected.P.topLeftCorner<4, 4>());
+    const double sigma_mps = std::sqrt(seen.sigma_rate_mps * seen.sigma_rate_mps + curvature.variance_m2ps2);
+    seen.correlation *= seen.sigma_rate_mps / sigma_mps;  // what is added has nothing in common with the range
+    seen.sigma_rate_mps = sigma_mps;
+    return {seen, curvature.mean_mps};
+  }
+  Model::Vector value(const Measurement& measurement) const { return measurement.z; }
+  Measured measured() const { return polar.measured(); }
+  PositionFix fix(const Measurement& measurement) const { return polar.fix(measurement); }
 };
 
 }  // namespace truebearing

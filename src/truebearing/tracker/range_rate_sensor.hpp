@@ -9,6 +9,7 @@
 
 #include "truebearing/measurement/position_and_rate.hpp"
 #include "truebearing/measurement/range_rate.hpp"
+#include "truebearing/measurement/range_rate_curvature.hpp"
 #include "truebearing/tracker/polar_sensor.hpp"
 #include "truebearing/tracker/range_bearing_rate_sensor.hpp"
 #include "truebearing/tracker/step_record.hpp"
@@ -40,24 +41,29 @@ struct PartialRangeRateSensor {
 /// The unbiased converted position first, then the range rate, linearised about the estimate that the position leaves:
 /// that is one update with both, whose R is block diagonal. What the range's error has in common with the range rate's
 /// is taken out of it: rate - c range with c = rho sigma_rate / sigma_range. Bar-Shalom, Li and Kirubarajan 2001, section
-/// 10.4.3, for the conversion; Duan, Li, Han and Zhu 2005 for the order.
+/// 10.4.3, for the conversion; Duan, Li, Han and Zhu 2005 for the order. Where it is asked for, with the second order of
+/// the range rate about that estimate (range_rate_curvature.hpp).
 struct ConvertedRateSensor {
   using Model = PositionAndRate<2>;
   static constexpr bool kMeasuresPosition = false;
 
   RangeBearingRateSensor polar;
+  bool second_order = false;
 
   Model model(const Measurement& measurement, const Prediction& expected) const {
     const RangeBearingRate<> seen = polar.model(measurement);
     const PositionFix fix = polar.fix(measurement);
     const RangeBearing<> place{seen.site_m, seen.sigma_range_m, seen.sigma_bearing_rad};
     const Eigen::Matrix2d R = converted_R_m2(place, expected, [&] { return fix.R; });
-    const Eigen::Vector4d x = after_position(fix.z, R, expected);
+    const Estimate between = after_position(fix.z, R, expected);
+    const Eigen::Vector4d& x = between.x;
     const Eigen::Vector3d z = seen.h(x);
     const Eigen::Matrix<double, 3, 4> H = seen.H(x);
     const double c = range_share(seen), rho = seen.correlation;
     const Eigen::Vector4d row = (H.row(2) - c * H.row(0)).transpose();
-    return {R, row, z[2] - c * z[0] - row.dot(x), seen.sigma_rate_mps * std::sqrt(1.0 - rho * rho)};
+    const RangeRateCurvature curvature = second_order ? range_rate_curvature(seen, x, between.P) : RangeRateCurvature();
+    const double variance = seen.sigma_rate_mps * seen.sigma_rate_mps * (1.0 - rho * rho) + curvature.variance_m2ps2;
+    return {R, row, z[2] - c * z[0] - row.dot(x) + curvature.mean_mps, std::sqrt(variance)};
   }
   Model::Vector value(const Measurement& measurement) const {
     const double c = range_share(polar.model(measurement));
@@ -73,14 +79,21 @@ struct ConvertedRateSensor {
     return seen.correlation * seen.sigma_rate_mps / seen.sigma_range_m;
   }
 
+  struct Estimate {
+    Eigen::Vector4d x;
+    Eigen::Matrix4d P;
+  };
+
   // The position's update of what is expected; where S is no covariance, what is expected.
-  static Eigen::Vector4d after_position(const Eigen::Vector2d& z, const Eigen::Matrix2d& R,
-                                        const Prediction& expected) {
-    const Eigen::Vector4d x = expected.x.head<4>();
-    const Eigen::Matrix<double, 4, 2> PH = expected.P.topLeftCorner<4, 2>();
+  static Estimate after_position(const Eigen::Vector2d& z, const Eigen::Matrix2d& R, const Prediction& expected) {
+    Estimate estimate{expected.x.head<4>(), expected.P.topLeftCorner<4, 4>()};
+    const Eigen::Matrix<double, 4, 2> PH = estimate.P.leftCols<2>();
     const Eigen::Matrix2d S = PH.topRows<2>() + R;
     const Eigen::LLT<Eigen::Matrix2d> root(S);
-    return root.info() == Eigen::Success ? Eigen::Vector4d(x + PH * root.solve(z - x.head<2>())) : x;
+    if (root.info() != Eigen::Success) return estimate;
+    estimate.x += PH * root.solve(z - estimate.x.head<2>());
+    estimate.P -= PH * root.solve(PH.transpose());
+    return estimate;
   }
 };
 

@@ -57,5 +57,14 @@ TEST(SpaceCorrection, IsBelowTheMultipleModelOfOkfsRadar) {
   EXPECT_NEAR(comparison.tracker("imm_nfnn")->nees, 6.0, 1.0);
 }
 
+TEST(SpaceCorrection, IsNoWorseWhereTargetsKeepTheirVelocity) {
+  const Comparison comparison = run("okf_radar_const_speed", 200);
+  for (const char* other : {"imm", "tuned"}) {
+    expect_better(comparison, "imm_nfnn", other, "velocity_mps");
+    testing::expect_no_worse(comparison, "imm_nfnn", other, "position_m");
+  }
+  EXPECT_NEAR(comparison.tracker("imm_nfnn")->nees, 6.0, 1.0);
+}
+
 }  // namespace
 }  // namespace truebearing::range_rate_acceptance_test

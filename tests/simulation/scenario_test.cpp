@@ -73,7 +73,7 @@ TEST_P(ScenarioFile, SeedRoleAndRunSeparate) {
 INSTANTIATE_TEST_SUITE_P(All, ScenarioFile,
                          ::testing::Values("radar_1d_paper", "radar_1d_family", "radar_1d_shift_speed",
                                            "radar_1d_shift_noise", "radar_1d_flight", "manoeuvre_2d", "radar_2d",
-                                           "flight_5s", "vessels", "okf_radar"));
+                                           "flight_5s", "vessels", "okf_radar", "okf_radar_const_speed"));
 
 TEST(Scenario, PaperIsTheTargetOfThePaper) {
   const Recording recording = load("radar_1d_paper")->simulate({});

@@ -3,18 +3,19 @@
 
 #include <cmath>
 
-#include "truebearing/core/simd_dispatch.hpp"
+#include "truebearing/core/simd_width.hpp"
 #include "truebearing/tma/arctangent.hpp"
 
 namespace truebearing {
 namespace {
 
+template <int kWidth>
 [[gnu::always_inline]] inline void sum_cartesian_loops(const BearingArrays& in, const double* x, double origin_s,
                                                        CartesianSums& out) {
   const double x0 = x[0], y0 = x[1], vx = x[2], vy = x[3];
   double cost = 0, ra = 0, rb = 0, rat = 0, rbt = 0, aa = 0, ab = 0, bb = 0, aat = 0, abt = 0, bbt = 0, aatt = 0,
          abtt = 0, bbtt = 0;
-#pragma omp simd reduction(+ : cost, ra, rb, rat, rbt, aa, ab, bb, aat, abt, bbt, aatt, abtt, bbtt)
+#pragma omp simd simdlen(kWidth) reduction(+ : cost, ra, rb, rat, rbt, aa, ab, bb, aat, abt, bbt, aatt, abtt, bbtt)
   for (std::size_t i = 0; i < in.count; ++i) {
     const double t = in.time_s[i] - origin_s;
     const double dx = x0 + vx * t - in.first[i], dy = y0 + vy * t - in.second[i];
@@ -41,15 +42,16 @@ namespace {
   }
   out = {0.5 * cost, ra, rb, rat, rbt, aa, ab, bb, aat, abt, bbt, aatt, abtt, bbtt};
 }
-TRUEBEARING_FOR_AVX2(sum_cartesian, (const BearingArrays& in, const double* x, double origin_s, CartesianSums& out),
-                     (in, x, origin_s, out))
+TRUEBEARING_FOR_WIDEST(sum_cartesian, (const BearingArrays& in, const double* x, double origin_s, CartesianSums& out),
+                       (in, x, origin_s, out))
 
-[[gnu::always_inline]] inline void sum_modified_polar_loops(const BearingArrays& in, const double* y, double origin_s,
-                                                            double huber_sigmas, ModifiedPolarSums& out) {
+template <int kWidth, bool kHuber>
+[[gnu::always_inline]] inline void modified_polar_loops(const BearingArrays& in, const double* y, double origin_s,
+                                                        double huber_sigmas, ModifiedPolarSums& out) {
   const double sine = std::sin(y[0]), cosine = std::cos(y[0]), rate = y[1], closing = y[2], rho = y[3];
   double cost = 0, g0 = 0, g1 = 0, g2 = 0, g3 = 0, a00 = 0, a10 = 0, a11 = 0, a20 = 0, a21 = 0, a22 = 0, a30 = 0,
          a31 = 0, a32 = 0, a33 = 0;
-#pragma omp simd reduction(+ : cost, g0, g1, g2, g3, a00, a10, a11, a20, a21, a22, a30, a31, a32, a33)
+#pragma omp simd simdlen(kWidth) reduction(+ : cost, g0, g1, g2, g3, a00, a10, a11, a20, a21, a22, a30, a31, a32, a33)
   for (std::size_t i = 0; i < in.count; ++i) {
     const double t = in.time_s[i] - origin_s;
     // The departure of the sensor from its line, along the line of sight at origin_s and across it.
@@ -62,10 +64,15 @@ TRUEBEARING_FOR_AVX2(sum_cartesian, (const BearingArrays& in, const double* x, d
     const double inverse = 1.0 / (u * u + v * v);
     const double j0 = 1.0 + rho * (u * along + v * across) * inverse, j1 = u * t * inverse, j2 = -v * t * inverse,
                  j3 = (v * along - u * across) * inverse;
-    const double size = std::fabs(r) * std::sqrt(in.weight[i]);
-    const bool far = size > huber_sigmas;
-    const double w = far ? in.weight[i] * huber_sigmas / size : in.weight[i];
-    cost += far ? huber_sigmas * (2.0 * size - huber_sigmas) : size * size;
+    double w = in.weight[i];
+    if constexpr (kHuber) {
+      const double size = std::fabs(r) * std::sqrt(w);
+      const bool far = size > huber_sigmas;
+      w = far ? w * huber_sigmas / size : w;
+      cost += far ? huber_sigmas * (2.0 * size - huber_sigmas) : size * size;
+    } else {
+      cost += w * r * r;
+    }
     const double w0 = w * j0, w1 = w * j1, w2 = w * j2, w3 = w * j3;
     g0 += w0 * r;
     g1 += w1 * r;
@@ -84,18 +91,32 @@ TRUEBEARING_FOR_AVX2(sum_cartesian, (const BearingArrays& in, const double* x, d
   }
   out = {0.5 * cost, {g0, g1, g2, g3}, {a00, a10, a11, a20, a21, a22, a30, a31, a32, a33}};
 }
-TRUEBEARING_FOR_AVX2(sum_modified_polar,
-                     (const BearingArrays& in, const double* y, double origin_s, double huber_sigmas,
-                      ModifiedPolarSums& out),
-                     (in, y, origin_s, huber_sigmas, out))
+template <int kWidth>
+[[gnu::always_inline]] inline void sum_modified_polar_loops(const BearingArrays& in, const double* y, double origin_s,
+                                                            ModifiedPolarSums& out) {
+  modified_polar_loops<kWidth, false>(in, y, origin_s, 0.0, out);
+}
+TRUEBEARING_FOR_WIDEST(sum_modified_polar,
+                       (const BearingArrays& in, const double* y, double origin_s, ModifiedPolarSums& out),
+                       (in, y, origin_s, out))
+template <int kWidth>
+[[gnu::always_inline]] inline void sum_huber_loops(const BearingArrays& in, const double* y, double origin_s,
+                                                   double huber_sigmas, ModifiedPolarSums& out) {
+  modified_polar_loops<kWidth, true>(in, y, origin_s, huber_sigmas, out);
+}
+TRUEBEARING_FOR_WIDEST(sum_huber,
+                       (const BearingArrays& in, const double* y, double origin_s, double huber_sigmas,
+                        ModifiedPolarSums& out),
+                       (in, y, origin_s, huber_sigmas, out))
 
+template <int kWidth>
 [[gnu::always_inline]] inline void sum_frequencies_loops(const FrequencyArrays& in, const double* y, double mean_hz,
                                                          double sound_mps, FrequencySums& out) {
   const double sine = std::sin(y[0]), cosine = std::cos(y[0]), rate = y[1], closing = y[2], rho = y[3];
   const double r = 1.0 / rho, rate_mps = r * rate, closing_mps = r * closing, slowness = 1.0 / sound_mps;
   double squares = 0, information = 0, product = 0, g0 = 0, g1 = 0, g2 = 0, g3 = 0, s0 = 0, s1 = 0, s2 = 0, s3 = 0,
          a00 = 0, a10 = 0, a11 = 0, a20 = 0, a21 = 0, a22 = 0, a30 = 0, a31 = 0, a32 = 0, a33 = 0;
-#pragma omp simd reduction(+ : squares, information, product, g0, g1, g2, g3, s0, s1, s2, s3, \
+#pragma omp simd simdlen(kWidth) reduction(+ : squares, information, product, g0, g1, g2, g3, s0, s1, s2, s3, \
                            a00, a10, a11, a20, a21, a22, a30, a31, a32, a33)
   for (std::size_t i = 0; i < in.count; ++i) {
     const double t = in.time_s[i];
@@ -138,9 +159,10 @@ TRUEBEARING_FOR_AVX2(sum_modified_polar,
   out = {squares,          information,      product,
          {g0, g1, g2, g3}, {s0, s1, s2, s3}, {a00, a10, a11, a20, a21, a22, a30, a31, a32, a33}};
 }
-TRUEBEARING_FOR_AVX2(sum_frequencies,
-                     (const FrequencyArrays& in, const double* y, double mean_hz, double sound_mps, FrequencySums& out),
-                     (in, y, mean_hz, sound_mps, out))
+TRUEBEARING_FOR_WIDEST(sum_frequencies,
+                       (const FrequencyArrays& in, const double* y, double mean_hz, double sound_mps,
+                        FrequencySums& out),
+                       (in, y, mean_hz, sound_mps, out))
 
 }  // namespace
 
@@ -153,7 +175,10 @@ CartesianSums cartesian_sums(const BearingArrays& bearings, const double* x, dou
 ModifiedPolarSums modified_polar_sums(const BearingArrays& bearings, const double* y, double origin_s,
                                       double huber_sigmas) {
   ModifiedPolarSums sums;
-  sum_modified_polar(bearings, y, origin_s, huber_sigmas, sums);
+  if (std::isfinite(huber_sigmas))
+    sum_huber(bearings, y, origin_s, huber_sigmas, sums);
+  else
+    sum_modified_polar(bearings, y, origin_s, sums);
   return sums;
 }
 

@@ -48,10 +48,12 @@ void BearingWindow::reserve(std::size_t count) {
     column->reserve(count);
 }
 
+BearingArrays BearingWindow::arrays() const {
+  return {size(), time_s_.data(), sine_.data(), cosine_.data(), weight_.data(), east_m_.data(), north_m_.data()};
+}
+
 NormalEquations<4> BearingWindow::cartesian(const Eigen::Vector4d& x0, double origin_s) const {
-  const CartesianSums sums = cartesian_sums(
-      {size(), time_s_.data(), sine_.data(), cosine_.data(), weight_.data(), east_m_.data(), north_m_.data()},
-      x0.data(), origin_s);
+  const CartesianSums sums = cartesian_sums(arrays(), x0.data(), origin_s);
   // J = [a, b, a t, b t] with a = dy / r^2, b = -dx / r^2: nine sums make J'WJ.
   NormalEquations<4> equations;
   equations.cost = sums.cost;

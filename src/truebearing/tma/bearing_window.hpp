@@ -12,6 +12,8 @@
 
 namespace truebearing {
 
+struct BearingArrays;  // bearing_sums.hpp
+
 class BearingWindow {
  public:
   /// Appends one bearing of a sensor that stands at site_m; times do not decrease. sigma_rad > 0.
@@ -30,6 +32,8 @@ class BearingWindow {
   double bearing_rad(std::size_t i) const { return bearing_rad_[i]; }
   double weight(std::size_t i) const { return weight_[i]; }  ///< 1 / sigma^2
   Eigen::Vector2d site_m(std::size_t i) const { return {east_m_[i], north_m_[i]}; }
+  /// All of them, until the window changes.
+  BearingArrays arrays() const;
 
   /// F, J'Wr, J'WJ for x0 = [east, north, v_east, v_north] at time origin_s. Residuals wrap.
   NormalEquations<4> cartesian(const Eigen::Vector4d& x0, double origin_s) const;

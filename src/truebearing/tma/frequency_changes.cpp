@@ -112,7 +112,7 @@ BatchEstimate FrequencyChangeBatch::solve(TargetMotionBatch& batch, const Bearin
   frequencies.set_levels(level_);
   used_ = options_.handling != Handling::bearings_only || frequencies.levels() <= 1;
   BatchEstimate estimate = batch.solve(window, prior, warm, used_ ? &frequencies : nullptr);
-  if (estimate.found && options_.handling == Handling::levels) {
+  if (estimate.found && options_.handling == Handling::levels && frequencies.size() > 0) {
     const bool steady =
         frequencies.levels() == 1 && scan(frequencies, estimate).statistic <= scan_threshold(frequencies.size());
     if (!steady) {

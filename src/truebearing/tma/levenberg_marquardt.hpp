@@ -80,10 +80,10 @@ Minimum<N> levenberg_marquardt(const Problem& problem, const Eigen::Matrix<doubl
     const NormalEquations<N> tried = problem(x);
     const double gained = best.at.cost - tried.cost;
     if (tried.is_finite() && gained > 0.0 && promised > 0.0) {
-      const double ratio = gained / promised;
+      const double beyond_half = 2.0 * (gained / promised) - 1.0;
       best.x = x;
       best.at = tried;
-      mu *= std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * ratio - 1.0, 3));
+      mu *= std::max(1.0 / 3.0, 1.0 - beyond_half * beyond_half * beyond_half);
       nu = 2.0;
     } else {
       if (std::abs(gained) <= options.cost_tolerance) {  // nothing left but rounding

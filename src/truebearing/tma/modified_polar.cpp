@@ -32,7 +32,8 @@ void ModifiedPolar::look_at(const BearingWindow& window) {
   Eigen::Vector2d m1 = Eigen::Vector2d::Zero(), mt = Eigen::Vector2d::Zero();
   for (std::size_t i = 0; i < m; ++i) {
     const double t = window.time_s(i) - origin_s_;
-    unwrapped += wrap_pi(window.bearing_rad(i) - bearing0 - unwrapped);
+    const double turned = window.bearing_rad(i) - bearing0 - unwrapped;
+    unwrapped += std::abs(turned) <= kPi ? turned : wrap_pi(turned);  // the same, and most need no division
     t1 += t;
     t2 += t * t;
     b1 += unwrapped;

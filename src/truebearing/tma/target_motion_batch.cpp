@@ -60,6 +60,10 @@ NormalEquations<4> TargetMotionBatch::data(const Eigen::Vector4d& y) const {
   return equations;
 }
 
+NormalEquations<4> TargetMotionBatch::data(const Minimum<4>& minimum) const {
+  return prior_ ? data(minimum.x) : minimum.at;
+}
+
 NormalEquations<4> TargetMotionBatch::objective(const Eigen::Vector4d& y) const {
   NormalEquations<4> equations = data(y);
   if (prior_) prior_->add(polar_, y, equations);
@@ -107,7 +111,7 @@ void TargetMotionBatch::conclude(const Minimum<4>& minimum, BatchEstimate& estim
       ConstantVelocity<2, ContinuousWhiteNoise>{}.F(end_s_ - polar_.origin_s()) * polar_.jacobian(minimum.x);
   estimate.found = true;
   estimate.time_s = end_s_;
-  estimate.cost = data(minimum.x).cost;
+  estimate.cost = data(minimum).cost;
   estimate.objective = minimum.at.cost;
   estimate.iterations = minimum.iterations;
   estimate.converged = minimum.convergence == Convergence::converged || minimum.iterations < options_.max_iterations;
@@ -179,7 +183,7 @@ BatchEstimate TargetMotionBatch::solve(const BearingWindow& window, const std::o
   conclude(best, estimate);
   const Eigen::Matrix4d T =
       ConstantVelocity<2, ContinuousWhiteNoise>{}.F(end_s_ - polar_.origin_s()) * polar_.jacobian(best.x);
-  observability_ = truebearing::observability(data(best.x).A, best.x, polar_.length_s(), T);
+  observability_ = truebearing::observability(data(best).A, best.x, polar_.length_s(), T);
   observability_.against_infinity = 2.0 * (cost_at_infinity(best.x) - estimate.cost);
   ambiguities_.clear();
   constexpr double kLikely = 1.92, kSameRange = 1.2;

@@ -74,7 +74,9 @@ class TargetMotionBatch {
 
  private:
   void look_at(const BearingWindow& window, const std::optional<BatchPrior>& prior, const DopplerWindow* frequencies);
+  /// Without the prior's share.
   NormalEquations<4> data(const Eigen::Vector4d& y) const;
+  NormalEquations<4> data(const Minimum<4>& minimum) const;
   NormalEquations<4> objective(const Eigen::Vector4d& y) const;
   LevenbergMarquardtOptions<4> descent_options() const;
   void descend(const Eigen::Vector4d& start, BatchEstimate& estimate);

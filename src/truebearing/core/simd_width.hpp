@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// One loop nest compiled thrice, where registers of eight doubles are worth having: like simd_dispatch.hpp, and for
+// processors with AVX-512 besides.
+//     TRUEBEARING_FOR_WIDEST(name, (parameters), (arguments))
+// defines name(parameters), which calls the always-inline function name_loops<kWidth>(arguments), kWidth the doubles
+// that it works on together: 8 with AVX-512, else 4.
+#pragma once
+
+#include <cstdint>
+
+namespace truebearing {
+
+/// So many doubles, and as many integers of their size, in the vector extension of GCC and Clang.
+template <int kCount>
+struct VectorOf {
+  using Doubles [[gnu::vector_size(kCount * sizeof(double))]] = double;
+  using Bits [[gnu::vector_size(kCount * sizeof(std::int64_t))]] = std::int64_t;
+  using InMemory [[gnu::vector_size(kCount * sizeof(double)), gnu::aligned(alignof(double)), gnu::may_alias]] = double;
+
+  [[gnu::always_inline]] static void load(const double* from, Doubles& vector) {
+    vector = *reinterpret_cast<const InMemory*>(from);
+  }
+  [[gnu::always_inline]] static void store(const Doubles& vector, double* to) {
+    *reinterpret_cast<InMemory*>(to) = vector;
+  }
+};
+
+}  // namespace truebearing
+
+#if defined(__x86_64__) && defined(__GNUC__)
+#if defined(__clang__)
+#define TRUEBEARING_AVX512 "avx2,fma,avx512f,avx512dq,avx512vl"
+#else
+#define TRUEBEARING_AVX512 "avx2,fma,avx512f,avx512dq,avx512vl,prefer-vector-width=512"
+#endif
+#define TRUEBEARING_FOR_WIDEST(name, parameters, arguments)                                                  \
+  [[gnu::target(TRUEBEARING_AVX512)]] static void name##_avx512 parameters {                                 \
+    name##_loops<8> arguments;                                                                               \
+  }                                                                                                          \
+  [[gnu::target("avx2,fma")]] static void name##_avx2 parameters {                                           \
+    name##_loops<4> arguments;                                                                               \
+  }                                                                                                          \
+  static void name##_any parameters {                                                                        \
+    name##_loops<4> arguments;                                                                               \
+  }                                                                                                          \
+  void name parameters {                                                                                     \
+    static const bool has_avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");            \
+    static const bool has_avx512 = has_avx2 && __builtin_cpu_supports("avx512f") &&                          \
+                                   __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"); \
+    if (has_avx512)                                                                                          \
+      name##_avx512 arguments;                                                                               \
+    else if (has_avx2)                                                                                       \
+      name##_avx2 arguments;                                                                                 \
+    else                                                                                                     \
+      name##_any arguments;                                                                                  \
+  }
+#else
+#define TRUEBEARING_FOR_WIDEST(name, parameters, arguments) \
+  void name parameters {                                    \
+    name##_loops<4> arguments;                              \
+  }
+#endif

@@ -37,6 +37,13 @@ void AngleBoundTally::add(const AngleVariances& run) {
   rate_.add(run, [&](std::size_t place) { return run.posterior_deg2ps2[place]; });
 }
 
+void AngleBoundTally::exchange(TallyStream& stream) {
+  for (Sums* sums : {&apart_, &angle_, &rate_}) {
+    sums->runs.exchange(stream);
+    stream.list(sums->steps, [&](SquaredErrors& step) { truebearing::exchange(step, stream); });
+  }
+}
+
 std::vector<AngleBoundSummary> AngleBoundTally::summaries() const {
   return {{"cramer_rao_apart", {apart_.summary("angle_deg", "mse")}},
           {"posterior", {angle_.summary("angle_deg", "mse"), rate_.summary("rate_degps", "rate_mse")}}};

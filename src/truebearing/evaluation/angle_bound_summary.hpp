@@ -29,6 +29,7 @@ struct AngleBoundSummary {
 class AngleBoundTally {
  public:
   void add(const AngleVariances& run);
+  void exchange(TallyStream& stream);
   std::vector<AngleBoundSummary> summaries() const;
 
  private:

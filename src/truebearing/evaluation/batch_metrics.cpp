@@ -36,6 +36,11 @@ class BatchTally final : public MetricTally {
     }
   }
 
+  void exchange(TallyStream& stream) override {
+    non_finite_.exchange(stream);
+    iterations_.exchange(stream);
+  }
+
   std::vector<Metric> metrics() const override {
     if (non_finite_.empty()) return {};
     return {{"non_finite_starts", "1", std::nullopt, non_finite_.mean().value, std::nan("")},
@@ -74,6 +79,12 @@ void GlobalMinimumTally::add(const RunScore& run, const RunScore& reference) {
     compared_ += 1.0;
     found_ += other && other->cost <= best->cost * (1.0 + 1e-6) + 1e-6;
   }
+}
+
+void GlobalMinimumTally::exchange(TallyStream& stream) {
+  stream.sum(solved_);
+  stream.sum(compared_);
+  stream.sum(found_);
 }
 
 std::vector<Metric> GlobalMinimumTally::metrics() const {

@@ -22,6 +22,7 @@ std::shared_ptr<const MetricFamily> batch_metrics();
 class GlobalMinimumTally {
  public:
   void add(const RunScore& run, const RunScore& reference);
+  void exchange(TallyStream& stream);
   /// Nothing where either never solved.
   std::vector<Metric> metrics() const;
 

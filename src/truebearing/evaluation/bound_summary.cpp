@@ -24,14 +24,27 @@ constexpr const char* kRange = "range_error_rmse";
 
 }  // namespace
 
-void BoundTally::add(const std::vector<TargetMotionVariance>& run) {
-  if (sums_.empty()) {
-    sums_.resize(run.size());
-    for (TargetMotionVariance& sum : sums_) {
-      for (const Bounded& part : kBounded) sum.*part.variance = 0.0;
-      sum.*kFrequency.variance = 0.0;
-    }
+void BoundTally::begin(std::size_t times) {
+  if (!sums_.empty()) return;
+  sums_.resize(times);
+  for (TargetMotionVariance& sum : sums_) {
+    for (const Bounded& part : kBounded) sum.*part.variance = 0.0;
+    sum.*kFrequency.variance = 0.0;
   }
+}
+
+void BoundTally::exchange(TallyStream& stream) {
+  begin(stream.length(sums_.size()));
+  for (TargetMotionVariance& sum : sums_) {
+    for (const Bounded& part : kBounded) stream.sum(sum.*part.variance);
+    stream.sum(sum.*kFrequency.variance);
+  }
+  stream.any(has_frequency_);
+  stream.sum(runs_);
+}
+
+void BoundTally::add(const std::vector<TargetMotionVariance>& run) {
+  begin(run.size());
   for (std::size_t time = 0; time < run.size(); ++time) {
     for (const Bounded& part : kBounded) sums_[time].*part.variance += run[time].*part.variance;
     sums_[time].*kFrequency.variance += run[time].*kFrequency.variance;

@@ -21,9 +21,11 @@ struct BoundSummary {
 class BoundTally {
  public:
   void add(const std::vector<TargetMotionVariance>& run);
+  void exchange(TallyStream& stream);
   BoundSummary summary(const std::vector<double>& times_s) const;
 
  private:
+  void begin(std::size_t times);
   double mean(std::size_t time, double TargetMotionVariance::*variance) const;
 
   std::vector<TargetMotionVariance> sums_;  // [time]

@@ -48,6 +48,26 @@ void DetailsTally::add(const RunScore& run) {
   }
 }
 
+void DetailsTally::exchange(TallyStream& stream) {
+  stream.list(run_rmse_, [&](std::vector<double>& runs) {
+    const std::size_t count = stream.length(runs.size());
+    for (std::size_t i = 0; i < count; ++i)
+      if (stream.writes())
+        stream.value(runs[i]);
+      else if (const double rmse = stream.value(0.0); runs.size() < kMostRunsApart)
+        runs.push_back(rmse);
+  });
+  stream.list(steps_, [&](std::vector<StepMoments>& steps) {
+    stream.list(steps, [&](StepMoments& step) {
+      for (double* sum : {&step.sum, &step.squares, &step.runs}) stream.sum(*sum);
+    });
+  });
+  stream.list(nees_, [&](Nees& step) {
+    stream.sum(step.sum);
+    stream.sum(step.count);
+  });
+}
+
 TrackerDetails DetailsTally::details() const {
   TrackerDetails details;
   details.run_rmse = run_rmse_;

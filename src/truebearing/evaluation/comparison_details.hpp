@@ -24,6 +24,7 @@ class DetailsTally {
   /// dimension: the expected NEES.
   explicit DetailsTally(int dimension) : dimension_(dimension) {}
   void add(const RunScore& run);
+  void exchange(TallyStream& stream);
   TrackerDetails details() const;
 
  private:

@@ -77,9 +77,7 @@ void CorrectionTally::take_rules(const CorrectionAccount& account) {
 void CorrectionTally::add(const CorrectionTally& run) {
   if (steps_.size() < run.steps_.size()) steps_.resize(run.steps_.size());
   for (std::size_t i = 0; i < run.steps_.size(); ++i)
-    for (const auto member : {&Step::corrected, &Step::asked, &Step::measured, &Step::gate, &Step::box, &Step::referee,
-                              &Step::limited, &Step::handed_over, &Step::wanted, &Step::moved})
-      steps_[i].*member += run.steps_[i].*member;
+    for (const auto member : kSums) steps_[i].*member += run.steps_[i].*member;
   for (std::size_t i = 0; i < rules_.size(); ++i) {
     rules_[i].fired += run.rules_[i].fired;
     rules_[i].strongest += run.rules_[i].strongest;
@@ -96,6 +94,26 @@ void CorrectionTally::add(const CorrectionTally& run) {
   }
   outside_intervals_ += run.outside_intervals_;
   outside_disagreement_ += run.outside_disagreement_;
+}
+
+void CorrectionTally::exchange(TallyStream& stream) {
+  stream.list(steps_, [&](Step& step) {
+    for (const auto member : kSums) stream.sum(step.*member);
+  });
+  for (CorrectionDetails::Rule& rule : rules_) {
+    stream.sum(rule.fired);
+    stream.sum(rule.strongest);
+  }
+  for (Feature& feature : features_) {
+    stream.sum(feature.sum);
+    stream.sum(feature.squares);
+    stream.least(feature.least);
+    stream.greatest(feature.greatest);
+    stream.sum(feature.outside);
+    for (double& bin : feature.counted) stream.sum(bin);
+  }
+  stream.sum(outside_intervals_);
+  stream.sum(outside_disagreement_);
 }
 
 CorrectionDetails CorrectionTally::details() const {

@@ -3,6 +3,7 @@
 // its features were beside what it was taught on. Kept only where a comparison is asked for it.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -12,6 +13,7 @@
 
 #include "truebearing/core/constants.hpp"
 #include "truebearing/correction/correction.hpp"
+#include "truebearing/evaluation/tally_stream.hpp"
 
 namespace truebearing {
 
@@ -56,6 +58,7 @@ class CorrectionTally {
   void take(std::size_t step, std::span<const StepRecord> records, std::span<const CorrectionAccount> accounts);
   /// Another run of the same correction.
   void add(const CorrectionTally& run);
+  void exchange(TallyStream& stream);
   CorrectionDetails details() const;
 
  private:
@@ -63,6 +66,8 @@ class CorrectionTally {
     double corrected = 0.0, asked = 0.0, measured = 0.0;  // how many; with a length
     double gate = 0.0, box = 0.0, referee = 0.0, limited = 0.0, handed_over = 0.0, wanted = 0.0, moved = 0.0;
   };
+  static constexpr std::array kSums{&Step::corrected, &Step::asked,   &Step::measured,    &Step::gate,   &Step::box,
+                                    &Step::referee,   &Step::limited, &Step::handed_over, &Step::wanted, &Step::moved};
   struct Feature {
     double sum = 0.0, squares = 0.0, least = kInfinity, greatest = -kInfinity, outside = 0.0;
     std::vector<double> counted = std::vector<double>(CorrectionDetails::kBins);

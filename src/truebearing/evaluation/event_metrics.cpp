@@ -48,6 +48,12 @@ class EventTally final : public MetricTally {
     if (std::isfinite(first_s)) delay_s_.add(first_s - turn_s);
   }
 
+  void exchange(TallyStream& stream) override {
+    stream.any(any_);
+    for (Share* share : {&jumped_, &found_, &falsely_}) share->exchange(stream);
+    delay_s_.exchange(stream);
+  }
+
   std::vector<Metric> metrics() const override {
     std::vector<Metric> metrics;
     if (!any_) return metrics;

@@ -44,6 +44,11 @@ class GospaTally final : public MetricTally {
     false_tracks_.add({figures->false_tracks, figures->steps});
   }
 
+  void exchange(TallyStream& stream) override {
+    stream.all(all_have_);
+    for (RunErrors* errors : {&squared_, &localisation_, &missed_, &false_tracks_}) errors->exchange(stream);
+  }
+
   std::vector<Metric> metrics() const override {
     std::vector<Metric> metrics;
     if (!all_have_) return metrics;

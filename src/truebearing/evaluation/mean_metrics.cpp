@@ -30,6 +30,11 @@ class MeanTally final : public MetricTally {
     }
   }
 
+  void exchange(TallyStream& stream) override {
+    for (RunErrors& roots : roots_) roots.exchange(stream);
+    for (RunErrors& errors : errors_) errors.exchange(stream);
+  }
+
   std::vector<Metric> metrics() const override {
     std::vector<Metric> metrics;
     for (std::size_t q = 0; q < quantities_.size(); ++q) {

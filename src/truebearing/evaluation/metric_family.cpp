@@ -18,6 +18,10 @@ void MetricTallies::add(const RunScore& run) {
   for (const std::unique_ptr<MetricTally>& tally : tallies_) tally->add(run);
 }
 
+void MetricTallies::exchange(TallyStream& stream) {
+  for (const std::unique_ptr<MetricTally>& tally : tallies_) tally->exchange(stream);
+}
+
 std::vector<Metric> MetricTallies::metrics() const {
   std::vector<Metric> metrics;
   for (const std::unique_ptr<MetricTally>& tally : tallies_)
@@ -37,6 +41,10 @@ PairTallies::PairTallies(const ScoringRule& rule, const Scorer& a, const Scorer&
 
 void PairTallies::add(const RunScore& a, const RunScore& b) {
   for (const std::unique_ptr<PairTally>& tally : tallies_) tally->add(a, b);
+}
+
+void PairTallies::exchange(TallyStream& stream) {
+  for (const std::unique_ptr<PairTally>& tally : tallies_) tally->exchange(stream);
 }
 
 std::vector<PairedDifference> PairTallies::differences() const {

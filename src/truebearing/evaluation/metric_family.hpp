@@ -11,6 +11,7 @@
 #include "truebearing/evaluation/gospa.hpp"
 #include "truebearing/evaluation/metric.hpp"
 #include "truebearing/evaluation/scorer.hpp"
+#include "truebearing/evaluation/tally_stream.hpp"
 #include "truebearing/recording/recording.hpp"
 #include "truebearing/tracker/tracker.hpp"
 
@@ -48,6 +49,8 @@ class MetricTally {
  public:
   virtual ~MetricTally() = default;
   virtual void add(const RunScore& run) = 0;
+  /// Writes all that it has kept, or adds that of the runs that come next.
+  virtual void exchange(TallyStream& stream) = 0;
   /// The figures: name, unit and, of those at the rule's times, time. Empty where the tracker has none.
   virtual std::vector<Metric> metrics() const = 0;
 };
@@ -57,6 +60,7 @@ class PairTally {
  public:
   virtual ~PairTally() = default;
   virtual void add(const RunScore& a, const RunScore& b) = 0;
+  virtual void exchange(TallyStream& stream) = 0;
   virtual std::vector<PairedDifference> differences() const = 0;
 };
 
@@ -83,6 +87,7 @@ class MetricTallies final : public MetricTally {
  public:
   MetricTallies(const ScoringRule& rule, const Scorer& scorer);
   void add(const RunScore& run) override;
+  void exchange(TallyStream& stream) override;
   std::vector<Metric> metrics() const override;
 
  private:
@@ -93,6 +98,7 @@ class PairTallies final : public PairTally {
  public:
   PairTallies(const ScoringRule& rule, const Scorer& a, const Scorer& b);
   void add(const RunScore& a, const RunScore& b) override;
+  void exchange(TallyStream& stream) override;
   std::vector<PairedDifference> differences() const override;
 
  private:

@@ -26,6 +26,8 @@ class MseTally final : public MetricTally {
     runs_.add(all);
   }
 
+  void exchange(TallyStream& stream) override { runs_.exchange(stream); }
+
   std::vector<Metric> metrics() const override {
     const Estimate mse = runs_.mse();
     return {{"mse_db", "dB", std::nullopt, 10.0 * std::log10(mse.value), 10.0 / std::log(10.0) * mse.se / mse.value}};

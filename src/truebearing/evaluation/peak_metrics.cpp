@@ -25,6 +25,10 @@ class PeakTally final : public MetricTally {
     }
   }
 
+  void exchange(TallyStream& stream) override {
+    for (Samples& peaks : peaks_) peaks.exchange(stream);
+  }
+
   std::vector<Metric> metrics() const override {
     std::vector<Metric> metrics;
     for (std::size_t q = 0; q < quantities_.size(); ++q) {

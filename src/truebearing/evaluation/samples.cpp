@@ -61,10 +61,7 @@ void MedianOf::add(double value) {
 // Keeps the half of them that is about the middle of all. Runs that are like those so far move the middle by less the
 // more there were.
 void MedianOf::narrow() {
-  if (bins_.empty()) {
-    bins_.resize(kBins);
-    for (const double value : values_) ++bins_[bin_of(value)];
-  }
+  begin_bins();
   const std::size_t size = values_.size(), middle = count_ / 2, quarter = size / 4;
   if (quarter == 0 || middle < below_ || middle - below_ >= size) {
     values_ = {};
@@ -95,7 +92,7 @@ double MedianOf::value() const {
   // The value at half of the way through, as if those of a bin lay evenly in it.
   double left = 0.5 * static_cast<double>(count_);
   for (std::size_t bin = 0; bin < bins_.size(); ++bin) {
-    const double inside = bins_[bin];
+    const auto inside = static_cast<double>(bins_[bin]);
     if (inside >= left && inside > 0.0)
       return beginning_of(bin) + left / inside * (beginning_of(bin + 1) - beginning_of(bin));
     left -= inside;
@@ -103,48 +100,139 @@ double MedianOf::value() const {
   return kNaN;
 }
 
-void Samples::Moments::add(double value) {
-  n += 1.0;
-  const double off = value - mean;
-  mean += off / n;
-  squares += off * (value - mean);
+void MedianOf::begin_bins() {
+  if (!bins_.empty()) return;
+  bins_.resize(kBins);
+  for (const double value : values_) ++bins_[bin_of(value)];
 }
 
-Estimate Samples::Moments::estimate() const {
-  return {mean, n > 1.0 ? std::sqrt(squares / (n - 1.0) / n) : kNaN};
+void MedianOf::exchange(TallyStream& stream) {
+  const bool as_bins = stream.whole(stream.compact() ? 1 : 0) != 0 || stream.compact();
+  if (stream.writes()) {
+    if (as_bins) return write_bins(stream);
+    stream.length(values_.size());
+    for (const double value : values_) stream.value(value);
+    return;
+  }
+  if (as_bins) return add_bins(stream);
+  const std::size_t count = stream.length(0);
+  for (std::size_t i = 0; i < count; ++i) add(stream.value(0.0));
 }
 
-void Samples::take(double value) {
-  x_.add(value);
-  squared_.add(value * value);
-  about_centre_.add((value - centre_) * (value - centre_));
+// Which bins hold anything, and how much: bin and count in one word.
+void MedianOf::write_bins(TallyStream& stream) const {
+  std::vector<std::uint64_t> held;
+  if (bins_.empty()) {
+    for (const double value : values_) held.push_back(bin_of(value));
+    std::sort(held.begin(), held.end());
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < held.size(); ++kept) {
+      const std::size_t begin = i;
+      while (i < held.size() && held[i] == held[begin]) ++i;
+      held[kept] = held[begin] << 32U | static_cast<std::uint64_t>(i - begin);
+    }
+    held.resize(kept);
+  } else {
+    for (std::size_t bin = 0; bin < bins_.size(); ++bin)
+      if (bins_[bin] > 0) held.push_back(static_cast<std::uint64_t>(bin) << 32U | bins_[bin]);
+  }
+  stream.length(held.size());
+  for (const std::uint64_t word : held) stream.whole(word);
 }
 
-void Samples::add(double value) {
-  if (!is_all_apart()) return take(value);
-  values_.push_back(value);
-  if (values_.size() <= kMostRunsApart) return;
-  centre_ = mean_of(values_).value;
-  for (const double kept : values_) take(kept);
+// From here on all is told from bins.
+void MedianOf::add_bins(TallyStream& stream) {
+  begin_bins();
+  values_ = {};
+  low_ = kInfinity;
+  high_ = -kInfinity;
+  const std::size_t count = stream.length(0);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint64_t word = stream.whole(0);
+    const std::uint64_t in_bin = word & 0xffffffffU;
+    bins_[std::min<std::size_t>(word >> 32U, kBins - 1)] += in_bin;
+    count_ += in_bin;
+  }
+}
+
+void RunErrors::exchange(TallyStream& stream) {
+  const std::size_t together =
+      stream.compact() ? (groups_.size() + kGroupsOfBlock - 1) / kGroupsOfBlock : std::size_t{1};
+  const std::size_t count = stream.length(together > 1 ? (groups_.size() + together - 1) / together : groups_.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    SquaredErrors group;
+    if (stream.writes())
+      for (std::size_t k = i * together; k < std::min((i + 1) * together, groups_.size()); ++k) group.add(groups_[k]);
+    const double sum = stream.value(group.sum), size = stream.value(group.count);
+    if (!stream.writes()) add({sum, size});
+  }
+}
+
+void Samples::Moments::add(const Moments& later) {
+  const double na = n, nb = later.n, off = later.mean - mean, all = na + nb;
+  if (nb == 0.0) return;
+  if (na == 0.0) {
+    *this = later;
+    return;
+  }
+  const double step = off / all, pairs = na * nb * off * step;
+  fourths += later.fourths + pairs * step * step * (na * na - na * nb + nb * nb) +
+             6.0 * step * step * (na * na * later.squares + nb * nb * squares) +
+             4.0 * step * (na * later.cubes - nb * cubes);
+  cubes += later.cubes + pairs * step * (na - nb) + 3.0 * step * (na * later.squares - nb * squares);
+  squares += later.squares + pairs;
+  mean += step * nb;
+  n = all;
+}
+
+void Samples::take_together() {
+  for (const double value : values_) x_.add({1.0, value});
   values_ = {};
 }
 
-Estimate Samples::mean() const {
-  return is_all_apart() ? mean_of(values_) : x_.estimate();
+void Samples::add(double value) {
+  if (!is_all_apart()) return x_.add({1.0, value});
+  values_.push_back(value);
+  if (values_.size() > kMostRunsApart) take_together();
 }
 
-// To first order the jackknife of a root is the error of what it is taken of over twice the root.
+void Samples::exchange(TallyStream& stream) {
+  if (stream.compact()) take_together();
+  const std::size_t count = stream.length(values_.size());
+  if (stream.writes()) {
+    for (const double value : values_) stream.value(value);
+  } else {
+    for (std::size_t i = 0; i < count; ++i) add(stream.value(0.0));
+  }
+  Moments others;
+  for (const auto& [own, other] :
+       {std::pair{&x_.n, &others.n}, std::pair{&x_.mean, &others.mean}, std::pair{&x_.squares, &others.squares},
+        std::pair{&x_.cubes, &others.cubes}, std::pair{&x_.fourths, &others.fourths}})
+    *other = stream.value(*own);
+  if (stream.writes() || others.n == 0.0) return;
+  if (is_all_apart()) take_together();
+  x_.add(others);
+}
+
+Estimate Samples::mean() const {
+  if (is_all_apart()) return mean_of(values_);
+  return {x_.mean, x_.n > 1.0 ? std::sqrt(x_.squares / (x_.n - 1.0) / x_.n) : kNaN};
+}
+
+// To first order the jackknife of a root is the error of what it is taken of over twice the root. Of a square that is
+// x^2 = mu^2 + 2 mu d + d^2, d = x - mu.
 Estimate Samples::rmse() const {
   if (is_all_apart()) return rmse_of(values_);
-  const Estimate square = squared_.estimate();
-  const double root = std::sqrt(square.value);
-  return {root, square.se / (2.0 * root)};
+  const double mu = x_.mean, m2 = x_.squares / x_.n, m3 = x_.cubes / x_.n, m4 = x_.fourths / x_.n;
+  const double root = std::sqrt(mu * mu + m2), variance = 4.0 * mu * (mu * m2 + m3) + m4 - m2 * m2;
+  return {root, std::sqrt(std::max(variance, 0.0) / (x_.n - 1.0)) / (2.0 * root)};
 }
 
 Estimate Samples::standard_deviation() const {
   if (is_all_apart()) return standard_deviation_of(values_);
+  const double m2 = x_.squares / x_.n, m4 = x_.fourths / x_.n;
   const double deviation = std::sqrt(x_.squares / (x_.n - 1.0));
-  return {deviation, about_centre_.estimate().se / (2.0 * deviation)};
+  return {deviation, std::sqrt(std::max(m4 - m2 * m2, 0.0) / (x_.n - 1.0)) / (2.0 * deviation)};
 }
 
 }  // namespace truebearing

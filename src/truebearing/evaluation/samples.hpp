@@ -10,6 +10,7 @@
 
 #include "truebearing/core/constants.hpp"
 #include "truebearing/evaluation/statistics.hpp"
+#include "truebearing/evaluation/tally_stream.hpp"
 
 namespace truebearing {
 
@@ -19,12 +20,21 @@ inline constexpr std::size_t kMostRunsApart = std::size_t{1} << 16;
 /// 160 megabytes.
 inline constexpr std::size_t kMostValuesApart = std::size_t{5} << 22;
 
+inline void exchange(SquaredErrors& errors, TallyStream& stream) {
+  stream.sum(errors.sum);
+  stream.sum(errors.count);
+}
+
+/// Errors are written with a block of runs as so many groups at most, where the stream is compact.
+inline constexpr std::size_t kGroupsOfBlock = 16;
+
 /// Squared errors run by run. Beyond kMostRunsApart neighbours are taken together, and the jackknife leaves out groups.
 class RunErrors {
  public:
   void add(const SquaredErrors& run);
   Estimate rmse() const { return pooled_rmse(groups_); }
   Estimate mse() const { return pooled_mse(groups_); }
+  void exchange(TallyStream& stream);
 
  private:
   std::vector<SquaredErrors> groups_;
@@ -33,22 +43,27 @@ class RunErrors {
 };
 
 /// The middle of values >= 0. So many are kept one by one; of more, those about the middle, and those on either side are
-/// counted. Where the middle wanders away from what was kept, it is told from bins as wide as 1/4096 of what they hold.
+/// counted. Where the middle wanders away from what was kept, or where blocks of runs come as bins (TallyStream::compact),
+/// it is told from bins as wide as 1/4096 of what they hold.
 class MedianOf {
  public:
   explicit MedianOf(std::size_t kept_apart = kMostRunsApart) : kept_apart_(kept_apart) {}
   void add(double value);
   double value() const;
+  void exchange(TallyStream& stream);
 
  private:
   void narrow();
+  void begin_bins();
+  void write_bins(TallyStream& stream) const;
+  void add_bins(TallyStream& stream);
 
   std::size_t kept_apart_;
   std::vector<double> values_;  // all from low_ to high_
   double low_ = -kInfinity, high_ = kInfinity;
   std::size_t below_ = 0;            // values that are left of those
   std::size_t count_ = 0;            // of all
-  std::vector<std::uint32_t> bins_;  // of all; empty while all are kept
+  std::vector<std::uint64_t> bins_;  // of all; empty while all are kept
 };
 
 /// Runs for which something is so, of those that count.
@@ -60,6 +75,10 @@ class Share {
   }
   bool empty() const { return count_ == 0.0; }
   Estimate share() const { return share_of(ones_, count_); }
+  void exchange(TallyStream& stream) {
+    stream.sum(ones_);
+    stream.sum(count_);
+  }
 
  private:
   double ones_ = 0.0;
@@ -74,20 +93,19 @@ class Samples {
   Estimate mean() const;
   Estimate rmse() const;
   Estimate standard_deviation() const;
+  void exchange(TallyStream& stream);
 
  private:
-  // Number, mean and sum of squares about it (Chan, Golub and LeVeque 1983).
+  // Number, mean, and sums of powers about it (Chan, Golub and LeVeque 1983; of the third and fourth, Pebay 2008).
   struct Moments {
-    double n = 0.0, mean = 0.0, squares = 0.0;
-    void add(double value);
-    Estimate estimate() const;
+    double n = 0.0, mean = 0.0, squares = 0.0, cubes = 0.0, fourths = 0.0;
+    void add(const Moments& later);
   };
-  void take(double value);
   bool is_all_apart() const { return x_.n == 0.0; }
+  void take_together();
 
   std::vector<double> values_;  // one by one
-  Moments x_, squared_, about_centre_;
-  double centre_ = 0.0;
+  Moments x_;
 };
 
 }  // namespace truebearing

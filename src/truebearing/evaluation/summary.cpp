@@ -105,6 +105,22 @@ void SummaryTally::add(const RunScore& run) {
   runs_ += 1.0;
 }
 
+void SummaryTally::QuantityTally::exchange(TallyStream& stream) {
+  runs.exchange(stream);
+  median.exchange(stream);
+  stream.list(steps, [&](SquaredErrors& step) { truebearing::exchange(step, stream); });
+  stream.list(phases, [&](RunErrors& phase) { phase.exchange(stream); });
+  stream.sum(covered);
+  stream.sum(count);
+}
+
+void SummaryTally::exchange(TallyStream& stream) {
+  for (QuantityTally& quantity : quantities_) quantity.exchange(stream);
+  for (double* sum : {&nees_sum_, &covered_, &count_, &gate_sum_, &limited_, &lost_, &runs_}) stream.sum(*sum);
+  stream.sum(scored_steps_);
+  stream.sum(corrected_steps_);
+}
+
 TrackerSummary SummaryTally::summary() const {
   TrackerSummary summary;
   summary.name = name_;
@@ -147,6 +163,10 @@ void DifferenceTally::add(const RunScore& a, const RunScore& b) {
     const double value = root_mean(squared_errors(a, compared.in_a)) - root_mean(squared_errors(b, compared.in_b));
     if (!std::isnan(value)) compared.differences.add(value);
   }
+}
+
+void DifferenceTally::exchange(TallyStream& stream) {
+  for (Compared& compared : quantities_) compared.differences.exchange(stream);
 }
 
 std::vector<PairedDifference> DifferenceTally::differences() const {

@@ -50,12 +50,14 @@ class SummaryTally {
   SummaryTally(std::string name, const Scorer& scorer, const ScoringRule& rule,
                std::size_t kept_apart = kMostValuesApart);
   void add(const RunScore& run);
+  void exchange(TallyStream& stream);
   TrackerSummary summary() const;
 
  private:
   struct QuantityTally {
     explicit QuantityTally(std::size_t kept_apart) : median(kept_apart) {}
     void add(const RunScore& run, std::size_t quantity, double quantile);
+    void exchange(TallyStream& stream);
 
     RunErrors runs;
     MedianOf median;
@@ -81,6 +83,7 @@ class DifferenceTally {
  public:
   DifferenceTally(const Scorer& a, const Scorer& b);
   void add(const RunScore& a, const RunScore& b);
+  void exchange(TallyStream& stream);
   std::vector<PairedDifference> differences() const;
 
  private:

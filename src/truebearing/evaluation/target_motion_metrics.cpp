@@ -58,6 +58,13 @@ class TargetMotionTally final : public MetricTally {
     }
   }
 
+  void exchange(TallyStream& stream) override {
+    for (AtTime& at : at_times_) {
+      for (Samples* samples : {&at.range, &at.course, &at.speed}) samples->exchange(stream);
+      at.range_size.exchange(stream);
+    }
+  }
+
   std::vector<Metric> metrics() const override {
     std::vector<Metric> metrics;
     double time_to_20_s = std::nan("");

@@ -45,6 +45,15 @@ class TimeFigures {
     lost_.add(is_lost(run));
   }
 
+  void exchange(TallyStream& stream) {
+    for (Errors& errors : errors_) {
+      errors.all.exchange(stream);
+      errors.median.exchange(stream);
+    }
+    nees_.exchange(stream);
+    for (Share* share : {&covered_, &missing_, &lost_}) share->exchange(stream);
+  }
+
   void add_quantities(std::vector<Metric>& metrics) const {
     const std::vector<std::string>& quantities = scorer_.quantities();
     for (std::size_t q = 0; q < quantities.size(); ++q) {
@@ -96,6 +105,10 @@ class TimeTally final : public MetricTally {
     for (TimeFigures& figures : at_times_) figures.take(run);
   }
 
+  void exchange(TallyStream& stream) override {
+    for (TimeFigures& figures : at_times_) figures.exchange(stream);
+  }
+
   std::vector<Metric> metrics() const override {
     std::vector<Metric> metrics;
     for (const TimeFigures& figures : at_times_) {
@@ -123,6 +136,11 @@ class TimePairTally final : public PairTally {
         const double value = error_at(a, compared.in_a, time) - error_at(b, compared.in_b, time);
         if (std::isfinite(value)) compared.at_times[time].add(value);
       }
+  }
+
+  void exchange(TallyStream& stream) override {
+    for (Compared& compared : quantities_)
+      for (Samples& samples : compared.at_times) samples.exchange(stream);
   }
 
   std::vector<PairedDifference> differences() const override {

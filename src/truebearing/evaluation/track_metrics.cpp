@@ -78,6 +78,14 @@ class TrackTally final : public MetricTally {
     bad_.add(outcome.is_swap() || outcome.is_loss());
   }
 
+  void exchange(TallyStream& stream) override {
+    stream.all(all_have_);
+    for (RunErrors& errors : clean_errors_) errors.exchange(stream);
+    all_errors_.exchange(stream);
+    for (double* count : {&swaps_, &losses_, &excursions_, &clean_}) stream.sum(*count);
+    bad_.exchange(stream);
+  }
+
   std::vector<Metric> metrics() const override {
     std::vector<Metric> metrics;
     if (!all_have_) return metrics;
@@ -130,6 +138,14 @@ class TrackPairTally final : public PairTally {
         if (!std::isnan(value)) compared.by_phase[static_cast<std::size_t>(phase + 1)].add(value);
       }
     }
+  }
+
+  void exchange(TallyStream& stream) override {
+    stream.all(all_have_);
+    stream.names(names_);
+    stream.greatest(phases_);
+    for (Compared& compared : quantities_)
+      stream.list(compared.by_phase, [&](Samples& samples) { samples.exchange(stream); });
   }
 
   std::vector<PairedDifference> differences() const override {

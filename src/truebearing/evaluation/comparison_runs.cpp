@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "truebearing/evaluation/comparison_runs.hpp"
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <utility>
+
+#include "truebearing/evaluation/time_steps.hpp"
+
+namespace truebearing {
+namespace {
+
+constexpr std::size_t kMostRunsEvenlyShared = 16;
+constexpr std::size_t kFewBlocks = 256;    // enough to share among the cores of a machine
+constexpr std::size_t kMostBlocks = 4096;  // of a set
+
+std::size_t medians_of(const ComparisonRuns& runs) {  // at a time: of all sets, and of one
+  std::size_t medians = 0;
+  for (const Scorer& scorer : runs.scorers())
+    medians += (runs.scenarios().size() > 1 ? 2 : 1) * scorer.quantities().size();
+  return std::max<std::size_t>(medians, 1);
+}
+
+ComparisonTally tally_of(const ComparisonRuns& runs, bool details) {
+  return {runs.trackers(), runs.scorers(), runs.options(), kMostValuesApart / medians_of(runs), details};
+}
+
+}  // namespace
+
+std::size_t runs_of_block(std::size_t runs) {
+  std::size_t size = 1;
+  while (size < kMostRunsEvenlyShared && runs > kFewBlocks * size) size *= 2;
+  while (runs > kMostBlocks * size) size *= 2;
+  return size;
+}
+
+ComparisonRuns::ComparisonRuns(const TrackerSet& trackers, const std::vector<NamedScenario>& scenarios,
+                               const ComparisonOptions& options)
+    : trackers_(trackers),
+      scenarios_(scenarios),
+      options_(options),
+      runs_of_block_(runs_of_block(options.runs)),
+      blocks_of_set_((options.runs + runs_of_block_ - 1) / runs_of_block_),
+      copies_(worker_count(options.threads)) {
+  for (int i = 0; i < trackers.size(); ++i)
+    scorers_.emplace_back(scenarios.front().scenario->truth_space(), trackers.space(i));
+}
+
+std::size_t ComparisonRuns::runs_in(std::size_t block) const {
+  return std::min(runs_of_block_, options_.runs - block % blocks_of_set_ * runs_of_block_);
+}
+
+std::string ComparisonRuns::run(std::size_t block, std::size_t worker) {
+  std::optional<TrackerSet>& copy = copies_[worker];
+  if (!copy) copy.emplace(trackers_.fresh());
+  const bool compact = runs_of_block_ > kMostRunsEvenlyShared;
+  ComparisonTally tally(trackers_, scorers_, options_, compact ? 0 : kMostValuesApart, options_.details);
+  const std::size_t first = block % blocks_of_set_ * runs_of_block_;
+  for (std::size_t i = 0; i < runs_in(block); ++i) tally.add(outcome(set_of(block), first + i, *copy));
+  return tally.bytes(compact);
+}
+
+RunOutcome ComparisonRuns::outcome(std::size_t set, std::size_t run, TrackerSet& copy) const {
+  const Recording recording = scenarios_[set].scenario->simulate({options_.seed, options_.role, run});
+  RunOutcome outcome;
+  if (options_.details) {
+    outcome.corrections = correction_tallies(copy);
+    outcome.scores = score_recording(copy, scorers_, recording, options_.scoring, [&](std::size_t step) {
+      for (std::size_t i = 0; i < outcome.corrections.size(); ++i)
+        if (outcome.corrections[i])
+          outcome.corrections[i]->take(step, copy.records(static_cast<int>(i)),
+                                       copy.correction(static_cast<int>(i))->accounts());
+    });
+  } else {
+    outcome.scores = score_recording(copy, scorers_, recording, options_.scoring);
+  }
+  if (options_.cramer_rao)
+    outcome.bound = options_.cramer_rao->variances(recording, steps_at(recording, options_.scoring.times_s));
+  if (options_.angle_bound)
+    outcome.angle_bound = options_.angle_bound->variances(recording, options_.scoring.from_step);
+  return outcome;
+}
+
+void run_blocks(ComparisonRuns& runs, std::size_t first, std::size_t last, const Progress& progress,
+                const std::function<void(std::size_t block, std::string_view bytes)>& take) {
+  std::size_t total = 0, done = 0, next = first;
+  for (std::size_t block = first; block < last; ++block) total += runs.runs_in(block);
+  std::map<std::size_t, std::string> waiting;  // for one before them
+  std::mutex mutex;
+  monte_carlo(last - first, runs.options().threads, [&](std::size_t i, std::size_t worker) {
+    std::string bytes = runs.run(first + i, worker);
+    const std::lock_guard lock(mutex);
+    waiting.emplace(first + i, std::move(bytes));
+    for (auto it = waiting.begin(); it != waiting.end() && it->first == next; it = waiting.erase(it), ++next)
+      take(it->first, it->second);
+    done += runs.runs_in(first + i);
+    if (progress) progress(done, total);
+  });
+}
+
+ComparisonFigures::ComparisonFigures(const ComparisonRuns& runs)
+    : runs_(runs), all_(tally_of(runs, runs.options().details)) {
+  if (runs.scenarios().size() > 1)
+    for (std::size_t set = 0; set < runs.scenarios().size(); ++set) sets_.push_back(tally_of(runs, false));
+}
+
+void ComparisonFigures::add(std::size_t block, std::string_view bytes) {
+  all_.add(bytes);
+  if (!sets_.empty()) sets_[runs_.set_of(block)].add(bytes);
+}
+
+Comparison ComparisonFigures::comparison() const {
+  const ComparisonOptions& options = runs_.options();
+  const auto finish = [&](Comparison comparison, const NamedScenario& scenario, const std::string& set) {
+    const Recording first = scenario.scenario->simulate({options.seed, options.role, 0});
+    for (const Measurement& measurement : first.measurements) comparison.time_s.push_back(measurement.time_s);
+    comparison.phases = first.phases;
+    comparison.published = published_of(options.published, set);
+    return comparison;
+  };
+  Comparison comparison = finish(all_.comparison(), runs_.scenarios().front(), {});
+  for (std::size_t set = 0; set < sets_.size(); ++set) {
+    const NamedScenario& scenario = runs_.scenarios()[set];
+    comparison.sets.push_back({scenario.name, finish(sets_[set].comparison(), scenario, scenario.name)});
+  }
+  return comparison;
+}
+
+}  // namespace truebearing

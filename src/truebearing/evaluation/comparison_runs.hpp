@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// The runs of a comparison cut into blocks, and the figures of blocks that are added in their order. What computes the
+// blocks may be threads, processes or machines: the figures are the same to the last bit, as how runs are cut depends on
+// their number alone.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "truebearing/evaluation/comparison_tally.hpp"
+
+namespace truebearing {
+
+/// Runs of a block of a set that has so many: 1 for few, 16 for thousands, and so many that a set has no more than 4096
+/// blocks. Those of more than 16 come compact.
+std::size_t runs_of_block(std::size_t runs);
+
+class ComparisonRuns {
+ public:
+  /// All must outlive it.
+  ComparisonRuns(const TrackerSet& trackers, const std::vector<NamedScenario>& scenarios,
+                 const ComparisonOptions& options);
+
+  /// Of all sets, one set after another.
+  std::size_t blocks() const { return scenarios_.size() * blocks_of_set_; }
+  std::size_t set_of(std::size_t block) const { return block / blocks_of_set_; }
+  std::size_t runs_in(std::size_t block) const;
+  /// Runs a block and gives its tally. Of two calls with the same worker number one ends before the other begins.
+  std::string run(std::size_t block, std::size_t worker);
+
+  const TrackerSet& trackers() const { return trackers_; }
+  const std::vector<NamedScenario>& scenarios() const { return scenarios_; }
+  const ComparisonOptions& options() const { return options_; }
+  const std::vector<Scorer>& scorers() const { return scorers_; }
+
+ private:
+  RunOutcome outcome(std::size_t set, std::size_t run, TrackerSet& copy) const;
+
+  const TrackerSet& trackers_;
+  const std::vector<NamedScenario>& scenarios_;
+  const ComparisonOptions& options_;
+  std::vector<Scorer> scorers_;
+  std::size_t runs_of_block_;
+  std::size_t blocks_of_set_;
+  std::vector<std::optional<TrackerSet>> copies_;  // [worker]
+};
+
+/// Runs the blocks from first to before last on the threads of the options, and gives the tally of each to `take` in
+/// their order, from one thread at a time. progress: of the runs of these blocks.
+void run_blocks(ComparisonRuns& runs, std::size_t first, std::size_t last, const Progress& progress,
+                const std::function<void(std::size_t block, std::string_view bytes)>& take);
+
+/// The figures of all blocks, which are added in their order.
+class ComparisonFigures {
+ public:
+  /// The runs must outlive it.
+  explicit ComparisonFigures(const ComparisonRuns& runs);
+
+  /// Throws InputError where the bytes are no tally of such runs.
+  void add(std::size_t block, std::string_view bytes);
+  Comparison comparison() const;
+
+ private:
+  const ComparisonRuns& runs_;
+  ComparisonTally all_;
+  std::vector<ComparisonTally> sets_;  // where there are several
+};
+
+}  // namespace truebearing

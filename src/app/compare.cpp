@@ -10,6 +10,7 @@
 #include "app/compare_study.hpp"
 #include "app/data_folder.hpp"
 #include "app/output.hpp"
+#include "app/shard.hpp"
 #include "app/subcommands.hpp"
 #include "app/workflow.hpp"
 
@@ -21,10 +22,41 @@ struct CompareArguments {
   std::optional<std::uint64_t> seed;
   bool retrain = false;
   bool all = false;
+  std::string shard;
   CompareStudyOptions options;
 };
 
+// What cannot be shared among processes, or has nowhere to go.
+void check_shard(const CompareArguments& arguments) {
+  const auto refuse = [](const char* option, const char* found, const char* valid) {
+    throw InputError(option, found, valid);
+  };
+  const CompareStudyOptions& options = arguments.options;
+  if (options.details && arguments.shard.empty())
+    refuse("--details", "is of a shard", "--shard I/N beside it, or --report");
+  if (arguments.shard.empty()) return;
+  if (options.json.empty()) refuse("--shard", "has no file to be written to", "--json FILE beside it");
+  if (options.report.wanted()) refuse("--shard", "is no whole comparison to be drawn", "--details, and merge --report");
+  if (arguments.retrain) refuse("--retrain", "would train in every shard", "train first, and shards of its models");
+  if (!options.truth.empty()) refuse("--truth", "is of one process", "no --shard");
+}
+
+void compare_shard(const Study& study, const CompareArguments& arguments, const CompareStudyOptions& options) {
+  const CorrectionModels models;
+  StudyComparison comparison(study, models, options);
+  const ShardHeader header{std::filesystem::absolute(study.path()).lexically_normal().string(),
+                           hash_of_inputs(study),
+                           options.seed,
+                           comparison.options().runs,
+                           arguments.all,
+                           options.details,
+                           Shard::parse(arguments.shard)};
+  write_shard(comparison, header, options.json, options.quiet);
+}
+
 void run_compare(const CompareArguments& arguments) {
+  check_shard(arguments);
+  if (!arguments.shard.empty()) Shard::parse(arguments.shard);
   Study study = Study::load(arguments.study);
   if (arguments.all) study.show_all();
   CompareStudyOptions options = arguments.options;
@@ -32,6 +64,7 @@ void run_compare(const CompareArguments& arguments) {
   std::vector<std::filesystem::path> inputs = study.input_files();
   if (!options.truth.empty()) inputs.emplace_back(options.truth);
   check_outputs({options.json, options.report.page}, inputs);
+  if (!arguments.shard.empty()) return compare_shard(study, arguments, options);
   CorrectionModels models;
   if (arguments.retrain) {
     const WorkflowOptions workflow{options.seed, options.threads, options.quiet};
@@ -49,7 +82,7 @@ void add_compare(const Subcommands& all) {
   const Subcommand command = all.add("compare", "run the study's trackers on held-out runs and compare their errors");
   add_study(command, arguments->study);
   command.argument("--seed", arguments->seed, "seed; the study's own where not given");
-  command.argument("--runs", options.runs, "runs; the study's own number where not given").within(1, 10000000);
+  command.argument("--runs", options.runs, "runs; the study's own number where not given").within(1, 1000000000);
   command.argument("--threads", options.threads, "0: one per core").within(0, 1024);
   command.argument("--truth", options.truth,
                    "a recorded track (log with truth, or positions), measured afresh in every run; or a line array's "
@@ -57,6 +90,9 @@ void add_compare(const Subcommands& all) {
   add_log_arguments(command, options.reading);
   command.flag("--retrain", arguments->retrain, "tune and train afresh with this seed; files are left alone");
   command.argument("--json", options.json, "write the results as JSON; - is standard output");
+  command.argument("--shard", arguments->shard,
+                   "I/N: only part I of N of the runs, from 1/N to N/N, written to --json for `merge`");
+  command.flag("--details", options.details, "in a shard: keep what merge --report draws");
   add_report_arguments(command, options.report);
   add_table_arguments(command, options.tables);
   command.flag("--all", arguments->all, "with trackers that the study does not show");

@@ -37,47 +37,58 @@ std::size_t median_run(const std::vector<RunPicture>& pictures) {
 
 }  // namespace
 
-void compare_study(const Study& study, const CorrectionModels& models, const CompareStudyOptions& options) {
-  const std::unique_ptr<Scenario> recorded = recorded_truth(study, options);
-  const std::vector<NamedScenario> scenarios =
-      recorded ? std::vector<NamedScenario>{{options.truth, recorded.get()}} : study.evaluation_scenarios();
-  std::string notes = study.note();
-  for (const NamedScenario& named : scenarios)
-    if (const std::string note = named.scenario->note(); !note.empty()) notes += note + "\n";
+StudyComparison::StudyComparison(const Study& study, const CorrectionModels& models, const CompareStudyOptions& options)
+    : study_(study),
+      models_(models),
+      asked_(options),
+      recorded_(recorded_truth(study, options)),
+      scenarios_(recorded_ ? std::vector<NamedScenario>{{options.truth, recorded_.get()}}
+                           : study.evaluation_scenarios()),
+      notes_(study.note()),
+      comparison_options_(study.comparison_options(recorded_ != nullptr)),
+      trackers_(study.make_tracker_set(models)) {
+  for (const NamedScenario& named : scenarios_)
+    if (const std::string note = named.scenario->note(); !note.empty()) notes_ += note + "\n";
+  comparison_options_.seed = options.seed;
+  if (options.runs > 0) comparison_options_.runs = options.runs;
+  comparison_options_.threads = options.threads;
+  comparison_options_.details = options.details || options.report.wanted();
+  runs_ = std::make_unique<ComparisonRuns>(trackers_, scenarios_, comparison_options_);
+}
 
-  ComparisonOptions comparison_options = study.comparison_options(recorded != nullptr);
-  comparison_options.seed = options.seed;
-  if (options.runs > 0) comparison_options.runs = options.runs;
-  comparison_options.threads = options.threads;
-  comparison_options.details = options.report.wanted();
-  const TrackerSet trackers = study.make_tracker_set(models);
-  Comparison comparison;
-  {
-    ProgressLine progress("compare", options.quiet);
-    comparison_options.progress = progress.callback();
-    comparison = compare(trackers, scenarios, comparison_options);
-  }
-  comparison.study = study.name();
-  const Recording timed = scenarios.front().scenario->simulate({options.seed, Role::evaluation, 0});
-  for (int i = 0; i < trackers.size(); ++i)
-    comparison.ns_per_step.emplace_back(trackers.name(i),
-                                        time_per_step_ns(*study.make_tracker(trackers.name(i), models), timed));
+void StudyComparison::write(Comparison comparison) const {
+  comparison.study = study_.name();
+  const Recording timed = scenarios_.front().scenario->simulate({asked_.seed, Role::evaluation, 0});
+  for (int i = 0; i < trackers_.size(); ++i)
+    comparison.ns_per_step.emplace_back(trackers_.name(i),
+                                        time_per_step_ns(*study_.make_tracker(trackers_.name(i), models_), timed));
 
   std::vector<RunPicture> pictures;
-  if (options.report.wanted())
-    pictures = picture_runs(trackers, scenarios, comparison_options, comparison, sensor_sites(study));
+  if (asked_.report.wanted())
+    pictures = picture_runs(trackers_, scenarios_, comparison_options_, comparison, sensor_sites(study_));
   nlohmann::ordered_json on_log;
-  if (recorded && options.report.wanted())
+  if (recorded_ && asked_.report.wanted())
     on_log =
-        run_json(study, options.truth, trackers, *recorded, {options.seed, Role::evaluation, median_run(pictures)});
+        run_json(study_, asked_.truth, trackers_, *recorded_, {asked_.seed, Role::evaluation, median_run(pictures)});
   const std::string json = comparison_json(comparison, pictures, on_log.is_null() ? nullptr : &on_log);
-  const bool prints = !is_standard_output(options.json) && !is_standard_output(options.report.page);
-  if (prints) fmt::print("{}{}", notes, with_best_coloured(comparison_table(comparison, options.tables.layout())));
-  if (!options.json.empty()) write_output(options.json, json);
-  if (comparison.trackers.empty() || !(prints || options.report.wanted())) return;
-  const Results results = parse_results(json, study.name());
+  const bool prints = !is_standard_output(asked_.json) && !is_standard_output(asked_.report.page);
+  if (prints) fmt::print("{}{}", notes_, with_best_coloured(comparison_table(comparison, asked_.tables.layout())));
+  if (!asked_.json.empty()) write_output(asked_.json, json);
+  if (comparison.trackers.empty() || !(prints || asked_.report.wanted())) return;
+  const Results results = parse_results(json, study_.name());
   if (prints) fmt::print("\n{}\n", emphasised(answer(results)));
-  if (options.report.wanted()) write_report(options.report, {results});
+  if (asked_.report.wanted()) write_report(asked_.report, {results});
+}
+
+void compare_study(const Study& study, const CorrectionModels& models, const CompareStudyOptions& options) {
+  StudyComparison comparison(study, models, options);
+  ComparisonFigures figures(comparison.runs());
+  {
+    ProgressLine progress("compare", options.quiet);
+    run_blocks(comparison.runs(), 0, comparison.runs().blocks(), progress.callback(),
+               [&](std::size_t block, std::string_view bytes) { figures.add(block, bytes); });
+  }
+  comparison.write(figures.comparison());
 }
 
 }  // namespace truebearing

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Comparing the trackers of a study and writing what came of it: what `compare` and `learn` share.
+// Comparing the trackers of a study and writing what came of it: what `compare`, `learn` and `merge` share.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "app/log_options.hpp"
 #include "app/report_output.hpp"
 #include "app/terminal.hpp"
+#include "truebearing/evaluation/comparison_runs.hpp"
 #include "truebearing/study/study.hpp"
 
 namespace truebearing {
@@ -24,11 +26,35 @@ struct CompareStudyOptions {
   std::string json;
   ReportArguments report;
   TableArguments tables;
+  bool details = false;  ///< keep what plots need, though this process draws none
   bool quiet = false;
 };
 
-/// Prints the tables and the answer in a sentence, and writes JSON, page and plots where the options name them. `models` in place of those of the
-/// files. Throws InputError.
+/// A comparison of a study's trackers, ready to run whole or in parts.
+class StudyComparison {
+ public:
+  /// `models` in place of those of the files. All must outlive it. Throws InputError.
+  StudyComparison(const Study& study, const CorrectionModels& models, const CompareStudyOptions& options);
+
+  ComparisonRuns& runs() { return *runs_; }
+  const ComparisonOptions& options() const { return comparison_options_; }
+  /// Prints the tables and the answer in a sentence, and writes JSON, page and plots where the options name them. Throws
+  /// InputError.
+  void write(Comparison comparison) const;
+
+ private:
+  const Study& study_;
+  const CorrectionModels& models_;
+  const CompareStudyOptions& asked_;
+  std::unique_ptr<Scenario> recorded_;
+  std::vector<NamedScenario> scenarios_;
+  std::string notes_;
+  ComparisonOptions comparison_options_;
+  TrackerSet trackers_;
+  std::unique_ptr<ComparisonRuns> runs_;
+};
+
+/// All of its runs in this process, and what came of them written. Throws InputError.
 void compare_study(const Study& study, const CorrectionModels& models, const CompareStudyOptions& options);
 
 }  // namespace truebearing

@@ -55,7 +55,7 @@ std::string ComparisonRuns::run(std::size_t block, std::size_t worker) {
   std::optional<TrackerSet>& copy = copies_[worker];
   if (!copy) copy.emplace(trackers_.fresh());
   const bool compact = runs_of_block_ > kMostRunsEvenlyShared;
-  ComparisonTally tally(trackers_, scorers_, options_, compact ? 0 : kMostValuesApart, options_.details);
+  ComparisonTally tally(trackers_, scorers_, options_, compact ? kMostRunsApart : kMostValuesApart, options_.details);
   const std::size_t first = block % blocks_of_set_ * runs_of_block_;
   for (std::size_t i = 0; i < runs_in(block); ++i) tally.add(outcome(set_of(block), first + i, *copy));
   return tally.bytes(compact);

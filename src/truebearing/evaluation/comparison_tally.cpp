@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "truebearing/core/error.hpp"
-#include "truebearing/evaluation/batch_metrics.hpp"
 
 namespace truebearing {
 namespace {

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "truebearing/evaluation/batch_metrics.hpp"
 #include "truebearing/evaluation/comparison.hpp"
 
 namespace truebearing {

@@ -119,25 +119,28 @@ void MedianOf::exchange(TallyStream& stream) {
   for (std::size_t i = 0; i < count; ++i) add(stream.value(0.0));
 }
 
-// Which bins hold anything, and how much: bin and count in one word.
+// Which bins hold anything, each as its distance from the one before, and how much.
 void MedianOf::write_bins(TallyStream& stream) const {
-  std::vector<std::uint64_t> held;
+  std::vector<std::pair<std::size_t, std::uint64_t>> held;  // bin, count
   if (bins_.empty()) {
-    for (const double value : values_) held.push_back(bin_of(value));
-    std::sort(held.begin(), held.end());
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < held.size(); ++kept) {
-      const std::size_t begin = i;
-      while (i < held.size() && held[i] == held[begin]) ++i;
-      held[kept] = held[begin] << 32U | static_cast<std::uint64_t>(i - begin);
+    std::vector<std::size_t> bins;
+    for (const double value : values_) bins.push_back(bin_of(value));
+    std::sort(bins.begin(), bins.end());
+    for (const std::size_t bin : bins) {
+      if (held.empty() || held.back().first != bin) held.emplace_back(bin, 0);
+      ++held.back().second;
     }
-    held.resize(kept);
   } else {
     for (std::size_t bin = 0; bin < bins_.size(); ++bin)
-      if (bins_[bin] > 0) held.push_back(static_cast<std::uint64_t>(bin) << 32U | bins_[bin]);
+      if (bins_[bin] > 0) held.emplace_back(bin, bins_[bin]);
   }
   stream.length(held.size());
-  for (const std::uint64_t word : held) stream.whole(word);
+  std::size_t last = 0;
+  for (const auto& [bin, count] : held) {
+    stream.small(bin - last);
+    stream.small(count);
+    last = bin;
+  }
 }
 
 // From here on all is told from bins.
@@ -146,12 +149,13 @@ void MedianOf::add_bins(TallyStream& stream) {
   values_ = {};
   low_ = kInfinity;
   high_ = -kInfinity;
-  const std::size_t count = stream.length(0);
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint64_t word = stream.whole(0);
-    const std::uint64_t in_bin = word & 0xffffffffU;
-    bins_[std::min<std::size_t>(word >> 32U, kBins - 1)] += in_bin;
-    count_ += in_bin;
+  const std::size_t held = stream.length(0);
+  std::size_t bin = 0;
+  for (std::size_t i = 0; i < held; ++i) {
+    bin = std::min<std::size_t>(bin + std::min<std::uint64_t>(stream.small(0), kBins), kBins - 1);
+    const std::uint64_t count = stream.small(0);
+    bins_[bin] += count;
+    count_ += count;
   }
 }
 

@@ -46,6 +46,22 @@ std::size_t TallyStream::length(std::size_t length) {
   return static_cast<std::size_t>(read);
 }
 
+std::uint64_t TallyStream::small(std::uint64_t value) {
+  if (writes_) {
+    for (; value >= 128; value >>= 7U) bytes_ += static_cast<char>((value & 127U) | 128U);
+    bytes_ += static_cast<char>(value);
+    return 0;
+  }
+  for (unsigned shift = 0; shift < 64; shift += 7) {
+    if (left_.empty()) refuse("is cut short");
+    const auto byte = static_cast<unsigned char>(left_.front());
+    left_.remove_prefix(1);
+    value |= static_cast<std::uint64_t>(byte & 127U) << shift;
+    if (byte < 128) return value;
+  }
+  refuse("has a number that is too long");
+}
+
 void TallyStream::least(double& least) {
   const double other = value(least);
   if (!writes_) least = std::min(least, other);

@@ -43,6 +43,9 @@ class TallyStream {
   std::size_t length(std::size_t length);
   std::uint64_t whole(std::uint64_t value) { return writes_ ? (put(value), 0) : get(); }
 
+  /// The same of one that is mostly small: seven bits in a byte.
+  std::uint64_t small(std::uint64_t value);
+
   /// Item by item, by each(item): the list grows to the length of the one that is added.
   template <typename Item, typename Each>
   void list(std::vector<Item>& items, const Each& each) {

@@ -68,15 +68,10 @@ double run_epoch(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets, 
 
 void describe(const NormalisedRows& rows, const Eigen::VectorXd& weights, TrainedFuzzyNetwork& trained) {
   const FuzzyNetwork::Parameters& parameters = trained.parameters;
-  const Eigen::MatrixXd V = exponent_basis(rows.inputs);
-  const Eigen::MatrixXd coefficients = exponent_coefficients(parameters.centres, parameters.widths);
-  ConsequentEquations equations(parameters.centres.rows(), rows.targets.cols());
-  for (Eigen::Index first = 0; first < V.rows(); first += kBlockRows) {
-    const Eigen::Index count = std::min(kBlockRows, V.rows() - first);
-    Eigen::MatrixXd phi(count, parameters.centres.rows());
-    block_strengths(V.middleRows(first, count), coefficients, phi);
-    equations.add(phi, rows.targets.middleRows(first, count));
-  }
+  std::vector<Eigen::Index> all(static_cast<std::size_t>(rows.inputs.cols()));
+  std::iota(all.begin(), all.end(), Eigen::Index{0});
+  const ConsequentEquations equations(
+      RulePasses(1).sums(rows, all, exponent_coefficients(parameters.centres, parameters.widths)));
   trained.cost = equations.cost(parameters.consequents, 0.0).dot(weights);
   trained.usage = equations.usage();
   trained.local_mean = equations.local_mean() * parameters.output_scale.asDiagonal();
@@ -89,23 +84,19 @@ TrainedFuzzyGrid train_back_propagation(const FuzzyTrainingData& data, const Bac
   validate(data, 1);
   validate(options);
   const FuzzyNetwork::Parameters normal = normalisation(data, options.input_clip);
-  std::vector<Eigen::Index> order(static_cast<std::size_t>(data.rows()));
-  std::iota(order.begin(), order.end(), Eigen::Index{0});
-  const NormalisedRows rows = normalised_rows(data, normal, order);
+  const NormalisedRows rows = normalised_rows(data, normal);
 
   const int outputs = static_cast<int>(data.labels.cols());
-  GridNetwork grid(data_partition(rows.inputs, options.terms_per_input), outputs);
-  const Eigen::MatrixXd inputs = rows.inputs.transpose();
-  const Eigen::MatrixXd targets = rows.targets.transpose();
+  GridNetwork grid(data_partition(rows.inputs.transpose(), options.terms_per_input), outputs);
   const Eigen::VectorXd weights = data.weights();
-  order.resize(static_cast<std::size_t>(rows.inputs.rows()));
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(rows.inputs.cols()));
   std::iota(order.begin(), order.end(), Eigen::Index{0});
   RandomStream random = learning_stream(options.seed);
   GridParameters change;
   change.set_zero_like(grid.parameters);
   for (int epoch = 0; epoch < options.epochs; ++epoch) {
     shuffle(order, random);
-    const double cost = run_epoch(inputs, targets, weights, order, options, change, grid);
+    const double cost = run_epoch(rows.inputs, rows.targets, weights, order, options, change, grid);
     if (progress) progress(epoch + 1, options.epochs, cost);
   }
 

@@ -104,26 +104,21 @@ FuzzyNetwork::Parameters normalisation(const FuzzyTrainingData& data, double inp
   return parameters;
 }
 
-NormalisedRows normalised_rows(const FuzzyTrainingData& data, const FuzzyNetwork::Parameters& normalisation,
-                               std::span<const Eigen::Index> rows) {
-  const Eigen::Index count = static_cast<Eigen::Index>(rows.size());
-  const Eigen::Index total = data.mirrored_rows() ? 2 * count : count;
+NormalisedRows normalised_rows(const FuzzyTrainingData& data, const FuzzyNetwork::Parameters& normalisation) {
+  const Eigen::Index count = data.rows(), total = data.mirrored_rows() ? 2 * count : count;
   const Eigen::VectorXd signs = data.output_signs();
-  NormalisedRows normalised{Eigen::MatrixXd(total, data.features.cols()), Eigen::MatrixXd(total, data.labels.cols())};
+  NormalisedRows normalised{Eigen::MatrixXd(data.features.cols(), total), Eigen::MatrixXd(data.labels.cols(), total)};
   const auto fill = [&](Eigen::Index first, bool mirror) {
     for (Eigen::Index i = 0; i < data.features.cols(); ++i) {
       const double sign = mirror ? data.parity[static_cast<std::size_t>(i)] : 1.0;
       for (Eigen::Index n = 0; n < count; ++n) {
-        const double feature = sign * data.features(rows[static_cast<std::size_t>(n)], i);
-        const double u = (feature - normalisation.input_mean[i]) / normalisation.input_scale[i];
-        normalised.inputs(first + n, i) = std::clamp(u, -normalisation.input_clip, normalisation.input_clip);
+        const double u = (sign * data.features(n, i) - normalisation.input_mean[i]) / normalisation.input_scale[i];
+        normalised.inputs(i, first + n) = std::clamp(u, -normalisation.input_clip, normalisation.input_clip);
       }
     }
     for (Eigen::Index o = 0; o < data.labels.cols(); ++o) {
       const double factor = (mirror ? signs[o] : 1.0) / normalisation.output_scale[o];
-      for (Eigen::Index n = 0; n < count; ++n) {
-        normalised.targets(first + n, o) = factor * data.labels(rows[static_cast<std::size_t>(n)], o);
-      }
+      for (Eigen::Index n = 0; n < count; ++n) normalised.targets(o, first + n) = factor * data.labels(n, o);
     }
   };
   fill(0, false);

@@ -9,7 +9,6 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <functional>
-#include <span>
 #include <vector>
 
 #include "truebearing/core/random.hpp"
@@ -61,13 +60,12 @@ void require_option(const char* option, double value, double low, double high);
 /// the network has no offset. What does not vary gets scale 1.
 FuzzyNetwork::Parameters normalisation(const FuzzyTrainingData& data, double input_clip);
 
-/// Rows as the network sees them, with their mirror images behind them.
+/// Rows as the network sees them, one to a column, with their mirror images behind them: of row n at n + N.
 struct NormalisedRows {
-  Eigen::MatrixXd inputs;   ///< U (n x d)
-  Eigen::MatrixXd targets;  ///< T (n x p)
+  Eigen::MatrixXd inputs;   ///< U' (d x n)
+  Eigen::MatrixXd targets;  ///< T' (p x n)
 };
-NormalisedRows normalised_rows(const FuzzyTrainingData& data, const FuzzyNetwork::Parameters& normalisation,
-                               std::span<const Eigen::Index> rows);
+NormalisedRows normalised_rows(const FuzzyTrainingData& data, const FuzzyNetwork::Parameters& normalisation);
 
 /// At most `count` of `total` row numbers, ascending: one at random from each of `count` equal strata, so that every
 /// run and every phase of it is represented.

@@ -109,6 +109,7 @@ MotionResidual train_learned_motion(const Study& study, const std::string& name,
   fit.learning_rate = learned.learning_rate;
   fit.ridge = learned.ridge;
   fit.seed = options.seed;
+  fit.threads = options.threads;
   const auto begin = std::chrono::steady_clock::now();
   MotionResidual residual;
   residual.network = FuzzyNetwork(train_variable_projection(data, fit, options.training_progress).parameters);

@@ -11,27 +11,17 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <utility>
+
+#include "training/rule_passes.hpp"
 
 namespace truebearing {
 
-/// V (n x 2d+1) = [1, U, U^2]: a rule's exponent is linear in it.
-Eigen::MatrixXd exponent_basis(const Eigen::MatrixXd& U);
-/// E (2d+1 x M) with V E = -sum_i (u_i - c_ji)^2 / (2 s_ji^2).
-Eigen::MatrixXd exponent_coefficients(const Eigen::MatrixXd& centres, const Eigen::MatrixXd& widths);
-
-/// Rows that are worked on at once: a block of strengths stays in the cache.
-inline constexpr Eigen::Index kBlockRows = 256;
-
-/// Phi (n x M) of at most kBlockRows rows V.
-void block_strengths(const Eigen::Ref<const Eigen::MatrixXd>& V, const Eigen::MatrixXd& coefficients,
-                     Eigen::Ref<Eigen::MatrixXd> phi);
-
-/// Phi'Phi, Phi'T and Phi'1, accumulated over blocks of rows.
+/// The normal equations of the consequents.
 class ConsequentEquations {
  public:
-  ConsequentEquations(Eigen::Index rules, Eigen::Index outputs);
-  void add(const Eigen::Ref<const Eigen::MatrixXd>& phi, const Eigen::Ref<const Eigen::MatrixXd>& T);
+  explicit ConsequentEquations(StrengthSums sums) : sums_(std::move(sums)), rows_(static_cast<double>(sums_.rows)) {}
   /// W (M x p) = (Phi'Phi + lambda n/M I)^-1 Phi'T, lambda > 0; the best in mirror pairs with the `pair_signs` (p) of
   /// the outputs where those are given.
   Eigen::MatrixXd consequents(double lambda, const Eigen::VectorXd& pair_signs = {}) const;
@@ -41,32 +31,32 @@ class ConsequentEquations {
   Eigen::VectorXd cost(const Eigen::MatrixXd& W, double lambda) const;
 
  private:
-  double rows_ = 0.0;
-  Eigen::MatrixXd strengths_squared_;     // (M x M), lower triangle
-  Eigen::MatrixXd strengths_by_targets_;  // (M x p)
-  Eigen::VectorXd strengths_sum_;         // (M)
-  Eigen::VectorXd targets_squared_;       // (p)
+  StrengthSums sums_;
+  double rows_;
 };
 
 class ProjectedCost {
  public:
-  /// pair_signs (p): the outputs' where rules come in mirror pairs, else empty.
-  ProjectedCost(Eigen::VectorXd output_weights, double lambda, Eigen::VectorXd pair_signs = {})
-      : output_weights_(std::move(output_weights)), lambda_(lambda), pair_signs_(std::move(pair_signs)) {}
+  /// pair_signs (p): the outputs' where rules come in mirror pairs, else empty. threads: 0, one per core.
+  ProjectedCost(Eigen::VectorXd output_weights, double lambda, int threads, Eigen::VectorXd pair_signs = {})
+      : output_weights_(std::move(output_weights)),
+        lambda_(lambda),
+        pair_signs_(std::move(pair_signs)),
+        passes_(threads) {}
 
   struct Gradient {
     Eigen::MatrixXd centres;     ///< (M x d), dJ/dc
     Eigen::MatrixXd log_widths;  ///< (M x d), dJ/d(ln s)
   };
-  /// J on rows U (n x d), T (n x p), n >= 1, at these centres and widths, and its gradient.
-  double evaluate(const Eigen::MatrixXd& U, const Eigen::MatrixXd& T, const Eigen::MatrixXd& centres,
+  /// J on `chosen` columns of `rows`, at least one, at these centres and widths, and its gradient.
+  double evaluate(const NormalisedRows& rows, std::span<const Eigen::Index> chosen, const Eigen::MatrixXd& centres,
                   const Eigen::MatrixXd& widths, Gradient& gradient);
 
  private:
   Eigen::VectorXd output_weights_;
   double lambda_;
   Eigen::VectorXd pair_signs_;
-  Eigen::MatrixXd phi_;  // block by block, (kBlockRows x M) each: kept between the two passes over the rows
+  RulePasses passes_;
 };
 
 }  // namespace truebearing

@@ -52,6 +52,7 @@ TrainedFuzzyNetwork train_network(const FuzzyTrainingData& data, const TrainingS
   variable_projection.learning_rate = spec.learning_rate;
   variable_projection.ridge = spec.ridge;
   variable_projection.seed = options.seed;
+  variable_projection.threads = options.threads;
   return train_variable_projection(data, variable_projection, options.training_progress);
 }
 

@@ -5,11 +5,12 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <vector>
 
 #include "training/k_means.hpp"
 #include "training/projected_cost.hpp"
+#include "training/rule_passes.hpp"
+#include "training/rule_passes_kernel.hpp"
 
 namespace truebearing {
 namespace {
@@ -36,11 +37,14 @@ Eigen::MatrixXd neighbour_widths(const Eigen::MatrixXd& centres, double floor) {
   return widths;
 }
 
-// At most max_rows rows, mirror images included.
-NormalisedRows draw_rows(const FuzzyTrainingData& data, Eigen::Index max_rows, RandomStream& random,
-                         const FuzzyNetwork::Parameters& normalisation) {
+// Numbers of at most max_rows of `rows`, mirror images included, each with its image.
+std::vector<Eigen::Index> draw_rows(const FuzzyTrainingData& data, Eigen::Index max_rows, RandomStream& random) {
   const Eigen::Index wanted = data.mirrored_rows() ? (max_rows + 1) / 2 : max_rows;
-  return normalised_rows(data, normalisation, stratified_rows(data.rows(), wanted, random));
+  std::vector<Eigen::Index> drawn = stratified_rows(data.rows(), wanted, random);
+  if (!data.mirrored_rows()) return drawn;
+  const std::size_t count = drawn.size();
+  for (std::size_t n = 0; n < count; ++n) drawn.push_back(data.rows() + drawn[n]);
+  return drawn;
 }
 
 class Adam {
@@ -114,17 +118,16 @@ void tie(const FuzzyTrainingData& data, TrainedFuzzyNetwork& trained) {
 
 // Every iteration draws its rows afresh, so that the loop sees all the data at the price of a sample: the rows of one
 // run are alike, and a fixed sample would be learnt by heart.
-void descend(const FuzzyTrainingData& data, const VariableProjectionOptions& options, RandomStream& random,
-             const TrainingProgress& progress, FuzzyNetwork::Parameters& parameters) {
-  ProjectedCost projected_cost(data.weights(), options.ridge, pair_signs(data));
+void descend(const FuzzyTrainingData& data, const NormalisedRows& rows, const VariableProjectionOptions& options,
+             RandomStream& random, const TrainingProgress& progress, FuzzyNetwork::Parameters& parameters) {
+  ProjectedCost projected_cost(data.weights(), options.ridge, options.threads, pair_signs(data));
   ProjectedCost::Gradient gradient;
   Eigen::MatrixXd log_widths = parameters.widths.array().log();
   Adam centre_steps(log_widths.rows(), log_widths.cols());
   Adam width_steps(log_widths.rows(), log_widths.cols());
   for (int iteration = 1; iteration <= options.iterations; ++iteration) {
-    const NormalisedRows sample = draw_rows(data, options.max_rows, random, parameters);
-    const double cost =
-        projected_cost.evaluate(sample.inputs, sample.targets, parameters.centres, parameters.widths, gradient);
+    const std::vector<Eigen::Index> sample = draw_rows(data, options.max_rows, random);
+    const double cost = projected_cost.evaluate(rows, sample, parameters.centres, parameters.widths, gradient);
     if (progress) progress(iteration, options.iterations, cost);
     if (data.paired_rules) tie(data, gradient);
     const double phase = std::numbers::pi * (iteration - 1) / options.iterations;
@@ -136,23 +139,28 @@ void descend(const FuzzyTrainingData& data, const VariableProjectionOptions& opt
   }
 }
 
-void fit_consequents(const FuzzyTrainingData& data, double ridge, TrainedFuzzyNetwork& trained) {
-  FuzzyNetwork::Parameters& parameters = trained.parameters;
-  const Eigen::MatrixXd coefficients = exponent_coefficients(parameters.centres, parameters.widths);
-  ConsequentEquations equations(parameters.centres.rows(), data.labels.cols());
-  Eigen::MatrixXd phi;
+// Each block of rows has its mirror images behind it.
+std::vector<Eigen::Index> all_rows(const FuzzyTrainingData& data) {
   std::vector<Eigen::Index> rows;
-  const Eigen::Index step = data.mirrored_rows() ? kBlockRows / 2 : kBlockRows;
+  rows.reserve(static_cast<std::size_t>(2 * data.rows()));
+  const Eigen::Index step = kernels::kBlockRows / 2;
   for (Eigen::Index first = 0; first < data.rows(); first += step) {
-    rows.resize(static_cast<std::size_t>(std::min(step, data.rows() - first)));
-    std::iota(rows.begin(), rows.end(), first);
-    const NormalisedRows block = normalised_rows(data, parameters, rows);
-    phi.resize(block.inputs.rows(), parameters.centres.rows());
-    block_strengths(exponent_basis(block.inputs), coefficients, phi);
-    equations.add(phi, block.targets);
+    const Eigen::Index last = std::min(first + step, data.rows());
+    for (Eigen::Index row = first; row < last; ++row) rows.push_back(row);
+    if (!data.mirrored_rows()) continue;
+    for (Eigen::Index row = first; row < last; ++row) rows.push_back(data.rows() + row);
   }
-  parameters.consequents = equations.consequents(ridge, pair_signs(data));
-  trained.cost = equations.cost(parameters.consequents, ridge).dot(data.weights());
+  return rows;
+}
+
+void fit_consequents(const FuzzyTrainingData& data, const NormalisedRows& rows,
+                     const VariableProjectionOptions& options, TrainedFuzzyNetwork& trained) {
+  FuzzyNetwork::Parameters& parameters = trained.parameters;
+  const ConsequentEquations equations(
+      RulePasses(options.threads)
+          .sums(rows, all_rows(data), exponent_coefficients(parameters.centres, parameters.widths)));
+  parameters.consequents = equations.consequents(options.ridge, pair_signs(data));
+  trained.cost = equations.cost(parameters.consequents, options.ridge).dot(data.weights());
   trained.usage = equations.usage();
   trained.local_mean = equations.local_mean() * parameters.output_scale.asDiagonal();
   if (data.paired_rules) tie(data, trained);
@@ -167,12 +175,13 @@ TrainedFuzzyNetwork train_variable_projection(const FuzzyTrainingData& data, con
   TrainedFuzzyNetwork trained;
   trained.parameters = normalisation(data, options.input_clip);
   RandomStream random = learning_stream(options.seed);
-  const NormalisedRows sample = draw_rows(data, options.max_rows, random, trained.parameters);
-  trained.parameters.centres = data.paired_rules ? paired_centres(data, sample.inputs, options.rules, random)
-                                                 : k_means(sample.inputs, options.rules, random);
+  const NormalisedRows rows = normalised_rows(data, trained.parameters);
+  const Eigen::MatrixXd sample = rows.inputs(Eigen::all, draw_rows(data, options.max_rows, random)).transpose();
+  trained.parameters.centres =
+      data.paired_rules ? paired_centres(data, sample, options.rules, random) : k_means(sample, options.rules, random);
   trained.parameters.widths = neighbour_widths(trained.parameters.centres, options.width_floor);
-  descend(data, options, random, progress, trained.parameters);
-  fit_consequents(data, options.ridge, trained);
+  descend(data, rows, options, random, progress, trained.parameters);
+  fit_consequents(data, rows, options, trained);
   return trained;
 }
 

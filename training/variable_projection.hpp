@@ -20,6 +20,7 @@ struct VariableProjectionOptions {
   double width_floor = 0.3;       ///< standard deviations, from the first iteration to the last
   Eigen::Index max_rows = 10000;  ///< of one iteration, mirror images included; each draws them afresh
   std::uint64_t seed = 1;
+  int threads = 0;  ///< 0: one per core; the network is the same to the bit
 };
 
 /// A function of data and options alone, to the bit. Throws InputError as validate() does and for options out of range.

@@ -10,7 +10,7 @@
 namespace truebearing {
 namespace {
 
-using kernels::kBlockRows;
+using kernels::kBlockRows, kernels::kBlockStride;
 
 // Blocks whose sums are kept until they are added: few where a pass is over all rows.
 constexpr std::size_t kBlocksAtOnce = 64;
@@ -91,15 +91,16 @@ void RulePasses::add_sums(const Eigen::MatrixXd& E, bool remember) {
 }
 
 void RulePasses::fill_basis_row(std::span<const Eigen::Index> block, Scratch& scratch) const {
-  const Eigen::Index d = rows_->inputs.rows(), terms = 2 * d + 1;
-  scratch.basis_row.resize(padded(terms), kBlockRows);
+  const Eigen::Index d = rows_->inputs.rows();
+  scratch.basis_row.setZero(padded(2 * d + 1), kBlockRows);
   for (std::size_t n = 0; n < block.size(); ++n) {
-    auto row = scratch.basis_row.col(static_cast<Eigen::Index>(n));
-    const auto u = rows_->inputs.col(block[n]);
+    double* const row = scratch.basis_row.col(static_cast<Eigen::Index>(n)).data();
+    const double* const u = rows_->inputs.col(block[n]).data();
     row[0] = 1.0;
-    row.segment(1, d) = u;
-    row.segment(1 + d, d) = u.cwiseAbs2();
-    row.tail(row.size() - terms).setZero();
+    for (Eigen::Index i = 0; i < d; ++i) {
+      row[1 + i] = u[i];
+      row[1 + d + i] = u[i] * u[i];
+    }
   }
 }
 
@@ -109,10 +110,10 @@ void RulePasses::take_sums(std::span<const Eigen::Index> block, const Eigen::Mat
   const auto count = static_cast<Eigen::Index>(block.size());
   const int stride = padded(M), q = padded(p);
   fill_basis_row(block, scratch);
-  scratch.basis.resize(kBlockRows, terms);
+  scratch.basis.resize(kBlockStride, terms);
   scratch.basis.topRows(count) = scratch.basis_row.topLeftCorner(terms, count).transpose();
-  scratch.basis.bottomRows(kBlockRows - count).setZero();
-  scratch.by_rule.resize(kBlockRows, M);
+  scratch.basis.bottomRows(kBlockStride - count).setZero();
+  scratch.by_rule.resize(kBlockStride, M);
   kernels::block_strengths({static_cast<int>(count), static_cast<int>(M), static_cast<int>(terms), scratch.basis.data(),
                             E.data(), scratch.by_rule.data(), by_row, stride});
 

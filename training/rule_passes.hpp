@@ -50,9 +50,9 @@ class RulePasses {
  private:
   // What one worker needs for a block.
   struct Scratch {
-    Eigen::MatrixXd basis;      // V (kBlockRows x 2d+1)
+    Eigen::MatrixXd basis;      // V (kBlockStride x 2d+1)
     Eigen::MatrixXd basis_row;  // V', filled up with zeros to whole lanes
-    Eigen::MatrixXd by_rule;    // Phi (kBlockRows x M)
+    Eigen::MatrixXd by_rule;    // Phi (kBlockStride x M)
     Eigen::MatrixXd by_row;     // Phi' where it is not remembered
     Eigen::MatrixXd targets;    // T', filled up
     Eigen::MatrixXd outputs, residuals, gradient;

@@ -19,8 +19,8 @@ template <int kRules>
   Lanes sums[std::size_t{kRules}][2] = {};
   for (int k = 0; k < terms; ++k) {
     Lanes first, second;
-    load(V + k * kBlockRows, first);
-    load(V + k * kBlockRows + kLanes, second);
+    load(V + k * kBlockStride, first);
+    load(V + k * kBlockStride + kLanes, second);
 #pragma GCC unroll 4
     for (int j = 0; j < kRules; ++j) {
       sums[j][0] += first * E[j * terms + k];
@@ -29,8 +29,8 @@ template <int kRules>
   }
 #pragma GCC unroll 4
   for (int j = 0; j < kRules; ++j) {
-    store(sums[j][0], phi + j * kBlockRows);
-    store(sums[j][1], phi + j * kBlockRows + kLanes);
+    store(sums[j][0], phi + j * kBlockStride);
+    store(sums[j][1], phi + j * kBlockStride + kLanes);
   }
 }
 
@@ -40,23 +40,23 @@ template <int kRules>
   load(phi, peak);
   for (int j = 1; j < rules; ++j) {
     Lanes exponent;
-    load(phi + j * kBlockRows, exponent);
+    load(phi + j * kBlockStride, exponent);
     peak = peak < exponent ? exponent : peak;
   }
   for (int j = 0; j < rules; ++j) {
     Lanes strength;
-    load(phi + j * kBlockRows, strength);
+    load(phi + j * kBlockStride, strength);
     strength -= peak;
     strength = strength < kLowestExponent ? Lanes{} + kLowestExponent : strength;
     exponential(strength);
     sum += strength;
-    store(strength, phi + j * kBlockRows);
+    store(strength, phi + j * kBlockStride);
   }
   sum = 1.0 / sum;
   for (int j = 0; j < rules; ++j) {
     Lanes strength;
-    load(phi + j * kBlockRows, strength);
-    store(strength * sum, phi + j * kBlockRows);
+    load(phi + j * kBlockStride, strength);
+    store(strength * sum, phi + j * kBlockStride);
   }
 }
 
@@ -66,15 +66,15 @@ template <int kRules>
     double* const phi = block.by_rule + first;
     int j = 0;
     for (; j + 4 <= rules; j += 4)
-      exponents<4>(block.basis + first, block.coefficients + j * terms, terms, phi + j * kBlockRows);
+      exponents<4>(block.basis + first, block.coefficients + j * terms, terms, phi + j * kBlockStride);
     for (; j < rules; ++j)
-      exponents<1>(block.basis + first, block.coefficients + j * terms, terms, phi + j * kBlockRows);
+      exponents<1>(block.basis + first, block.coefficients + j * terms, terms, phi + j * kBlockStride);
     normalise(rules, phi);
     normalise(rules, phi + kLanes);
   }
   for (int n = 0; n < block.rows; ++n) {
     double* const row = block.by_row + n * block.stride;
-    for (int j = 0; j < rules; ++j) row[j] = block.by_rule[j * kBlockRows + n];
+    for (int j = 0; j < rules; ++j) row[j] = block.by_rule[j * kBlockStride + n];
     for (int j = rules; j < block.stride; ++j) row[j] = 0.0;
   }
 }

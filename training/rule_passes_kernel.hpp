@@ -8,15 +8,17 @@ namespace truebearing::kernels {
 
 /// Rows of a block at most: its strengths stay in the cache. A multiple of the eight that are worked on together.
 inline constexpr int kBlockRows = 256;
+/// From one column of a block to the next: no power of two, or all of them would share the same places of the cache.
+inline constexpr int kBlockStride = kBlockRows + 8;
 
 /// Normalised strengths phi of `rules` rules at the rows of a block.
 struct StrengthsBlock {
-  int rows;                    ///< n <= kBlockRows
-  int rules;                   ///< M
-  int terms;                   ///< K = 2 d + 1
-  const double* basis;         ///< V (kBlockRows x K), by columns; finite beyond `rows` too, to the next multiple of 8
+  int rows;             ///< n <= kBlockRows
+  int rules;            ///< M
+  int terms;            ///< K = 2 d + 1
+  const double* basis;  ///< V (kBlockStride x K), by columns; finite beyond `rows` too, to the next multiple of 8
   const double* coefficients;  ///< E (K x M), by columns: the exponents are V E
-  double* by_rule;             ///< phi (kBlockRows x M), by columns
+  double* by_rule;             ///< phi (kBlockStride x M), by columns
   double* by_row;              ///< phi' (stride x n), by columns, zero in its last stride - M rows
   int stride;                  ///< padded_to_lanes(M)
 };

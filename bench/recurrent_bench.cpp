@@ -7,31 +7,8 @@
 
 #include <benchmark/benchmark.h>
 
-#include "truebearing/correction/gated_recurrent.hpp"
-
 namespace truebearing::bench {
 namespace {
-
-GatedRecurrent network(int units, int encoded) {
-  constexpr int kEntries = kOutputs * (kOutputs + 1) / 2;
-  GatedRecurrent::Parameters p;
-  p.input_mean = Eigen::VectorXd::Zero(kFeatures);
-  p.input_scale = Eigen::VectorXd::Ones(kFeatures);
-  p.output_scale = Eigen::VectorXd::Ones(kOutputs);
-  if (encoded > 0) {
-    p.encoder_weight = spread(encoded, kFeatures, 0.5);
-    p.encoder_bias = spread(encoded, 1, 0.5);
-  }
-  p.weight_ih = spread(3 * units, encoded > 0 ? encoded : kFeatures, 0.3);
-  p.weight_hh = spread(3 * units, units, 0.3);
-  p.bias_ih = spread(3 * units, 1, 0.3);
-  p.bias_hh = spread(3 * units, 1, 0.3);
-  p.output_weight = spread(kOutputs, units, 0.3);
-  p.output_bias = spread(kOutputs, 1, 0.3);
-  p.covariance_weight = spread(kEntries, units, 0.1);
-  p.covariance_bias = spread(kEntries, 1, 0.1);
-  return GatedRecurrent(std::move(p));
-}
 
 void gru(benchmark::State& state) {
   const GatedRecurrent asked = network(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));

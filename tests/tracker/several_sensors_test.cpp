@@ -12,6 +12,7 @@
 #include "truebearing/filter/filter_kinds.hpp"
 #include "truebearing/filter/kalman.hpp"
 #include "truebearing/filter/erased_motion.hpp"
+#include "truebearing/measurement/longer_state.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
 #include "truebearing/tracker/biased_sensor.hpp"
 #include "truebearing/tracker/filter_tracker.hpp"

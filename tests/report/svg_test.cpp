@@ -127,6 +127,24 @@ TEST(Svg, LongLineKeepsItsPeaksInFewPoints) {
   EXPECT_EQ(count_of(marks_of(svg), " 28.0"), 1) << "the peak, at the upper edge";
 }
 
+// A step without a value breaks it now and then, as of a log with outages.
+TEST(Svg, LongLineAndBandThatAreBrokenHaveFewPointsToo) {
+  std::vector<double> x, low, high;
+  for (int i = 0; i < 100000; ++i) {
+    x.push_back(i);
+    low.push_back(i % 90 == 0 ? kMissing : 1.0 + 0.5 * std::sin(i));
+    high.push_back(i == 54322 ? 50.0 : low.back() + 1.0);
+  }
+  const std::string line = svg_text(plot_of({{"long", tracker_look(0), Shape::line, x, low}}));
+  const std::string whole = svg_text(plot_of({{"long", tracker_look(0), Shape::line, x, high}}));
+  EXPECT_LT(line.size(), 100000u);
+  EXPECT_GE(count_of(marks_of(line), "M"), 1000) << "gaps are kept";
+  EXPECT_EQ(count_of(marks_of(whole), " 28.0"), 1) << "the peak, at the upper edge";
+  const std::string band = svg_text(plot_of({{"wide", tracker_look(0), Shape::band, x, low, high}}));
+  EXPECT_LT(band.size(), 200000u);
+  EXPECT_EQ(count_of(marks_of(band), " 28.0"), 1) << "the peak of the upper edge";
+}
+
 TEST(Svg, HostileNamesStayText) {
   const std::string hostile = "</text><script>alert(1)</script>\" onload=\"x\x01";
   Plot plot = plot_of({{hostile, tracker_look(0), Shape::line, {1, 2}, {1, 2}}});

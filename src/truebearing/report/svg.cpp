@@ -48,16 +48,22 @@ std::vector<std::vector<Pixel>> unbroken(const PlotSeries& series, const PlotFra
   return pieces;
 }
 
-// Of a line with several points in a column of pixels: the first, the lowest, the highest and the last look the same.
-std::vector<Pixel> thinned(const std::vector<Pixel>& line) {
-  if (line.size() < 2 * static_cast<std::size_t>(PlotFrame::kWidth)) return line;
+enum class Keep : unsigned char { both, highest, lowest };
+
+// Of a line with several points in a column of pixels the highest and the lowest look the same, of a band's edge the
+// outer one; and the ends. points: of all pieces of a line that is broken, which together are long.
+std::vector<Pixel> thinned(const std::vector<Pixel>& line, std::size_t points, Keep keep = Keep::both) {
+  if (points < 2 * static_cast<std::size_t>(PlotFrame::kWidth) || line.size() < 3) return line;
   std::vector<Pixel> kept;
   for (std::size_t first = 0, next = 0; first < line.size(); first = next) {
     while (next < line.size() && std::floor(line[next].x) == std::floor(line[first].x)) ++next;
     const auto begin = line.begin() + static_cast<std::ptrdiff_t>(first);
     const auto end = line.begin() + static_cast<std::ptrdiff_t>(next);
-    auto [low, high] = std::minmax_element(begin, end, [](const Pixel& a, const Pixel& b) { return a.y < b.y; });
-    std::vector marks{begin, low, high, end - 1};
+    // y points down.
+    auto [high, low] = std::minmax_element(begin, end, [](const Pixel& a, const Pixel& b) { return a.y < b.y; });
+    std::vector marks{keep == Keep::lowest ? low : high, keep == Keep::highest ? high : low};
+    if (first == 0) marks.push_back(begin);
+    if (next == line.size()) marks.push_back(end - 1);
     std::sort(marks.begin(), marks.end());
     marks.erase(std::unique(marks.begin(), marks.end()), marks.end());
     for (const auto& mark : marks) kept.push_back(*mark);
@@ -76,7 +82,7 @@ std::string draw_line(const PlotSeries& series, const PlotFrame& frame) {
   std::string path;
   MarkTimes times;
   for (const std::vector<Pixel>& piece : unbroken(series, frame)) {
-    const std::vector<Pixel> drawn_pixels = thinned(piece);
+    const std::vector<Pixel> drawn_pixels = thinned(piece, series.x.size());
     path += path_of(drawn_pixels);
     for (const Pixel& pixel : drawn_pixels) times.add(pixel.time_s);
     if (piece.size() == 1) path += "h0";  // a dot, by its round ends
@@ -105,7 +111,8 @@ std::string draw_band(const PlotSeries& series, const PlotFrame& frame) {
   std::vector<Pixel> upper, lower;
   const auto close = [&] {
     if (upper.size() > 1) {
-      const std::vector<Pixel> there = thinned(upper), back = thinned(lower);
+      const std::vector<Pixel> there = thinned(upper, series.x.size(), Keep::highest);
+      const std::vector<Pixel> back = thinned(lower, series.x.size(), Keep::lowest);
       path += path_of(there);
       for (auto pixel = back.rbegin(); pixel != back.rend(); ++pixel)
         path += fmt::format(" {:.1f} {:.1f}", pixel->x, pixel->y);

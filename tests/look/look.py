@@ -255,6 +255,18 @@ def pages_of_logs(looker, program, folder):
     run(program, "track", "manoeuvre_2d", log, "--report", os.path.join(folder, "log.html"))
     plots = looker.page(os.path.join(folder, "log.html"), pictures=True)
     looker.expect(any(plot["id"] == "tracks" for plot in plots), "log.html", "does not draw the tracks")
+    innovations = [plot["id"] for plot in plots if plot["id"].startswith(("innovations_", "nis_"))]
+    # With its truth a log is scored, and says the rest as well.
+    for page, *command in (("log_with_truth.html", "track", "manoeuvre_2d", source),
+                           ("log_afresh.html", "compare", "manoeuvre_2d", "--truth", source, "--runs", "5", "--quiet")):
+        kept = os.path.join(folder, page.replace("html", "json"))
+        run(program, *command, "--json", kept, "--report", os.path.join(folder, page))
+        with open(kept) as file:
+            results = json.load(file)
+        plots = looker.page(os.path.join(folder, page), results, pictures=True)
+        shown = [plot["id"] for plot in plots]
+        looker.expect(innovations and all(one in shown for one in innovations), page, "does not show all innovations")
+        looker.expect("run_median" in shown, page, "does not draw the median run")
     return bearings, log
 
 

@@ -92,7 +92,9 @@ TEST(LogPage, ShowsTracksInnovationsEventsAndWhatWasNotUsed) {
   EXPECT_THAT(page, HasSubstr("<td>missing</td><td>holds no value</td><td>-</td>"));
   EXPECT_THAT(page, HasSubstr("plain: too large"));
   EXPECT_THAT(page, HasSubstr("110 <span class=\"se\">± 5</span>"));
-  EXPECT_THAT(page, HasSubstr("<td>1</td><td>0.35 to 2</td><td>consistent</td><td>−0.5</td><td>−0.6 to 0.6</td>"));
+  EXPECT_THAT(
+      page,
+      HasSubstr("<td>1</td><td>0.35 to 2</td><td class=\"words\">consistent</td><td>−0.5</td><td>−0.6 to 0.6</td>"));
 }
 
 TEST(LogPage, SaysWhoForetellsBest) {
@@ -136,7 +138,7 @@ TEST(LogPage, SaysWhoForetellsBest) {
 
 TEST(LogPage, SaysWhoIsConsistentByItsNis) {
   EXPECT_EQ(log_answer(parse_log_results(log_of().dump(), "a.json")),
-            "Innovations as large as claimed: tuned. Larger than claimed: plain.");
+            "Innovations as large as claimed: tuned. Innovations larger than claimed: plain.");
   Json json = log_of();
   json["trackers"].erase("plain");
   json["trackers"]["tuned"]["nis"] = {{"steps", 0}, {"ratio", nullptr}, {"low", nullptr}, {"high", nullptr}};
@@ -167,6 +169,7 @@ TEST(LogPage, OfALogWithTruthShowsTheSameBesideItsErrors) {
   EXPECT_THAT(page, HasSubstr("<td>gated</td><td>outside the gate</td><td>49</td>"));
   EXPECT_THAT(page, HasSubstr("<th scope=\"row\">tuned</th><td>turn began</td>"));
   EXPECT_THAT(page, HasSubstr("plain: too large"));
+  EXPECT_THAT(page, HasSubstr("<h3>What was not used</h3>"));
 }
 
 TEST(LogPage, OfARunSaysWhichAndOfFilesSideBySideIsOfEach) {
@@ -186,6 +189,13 @@ TEST(LogPage, WithoutRejectionsSaysSo) {
   Json json = log_of();
   for (auto& [name, one] : json["trackers"].items()) one["not_used"] = Json::array();
   EXPECT_THAT(log_page(json.dump(), "a.json"), HasSubstr("Every measurement was used by every tracker."));
+}
+
+TEST(LogPage, LongListsAreScrolled) {
+  Json json = log_of();
+  EXPECT_THAT(log_page(json.dump(), "a.json"), Not(HasSubstr("class=\"wide long\"")));
+  for (int k = 0; k < 20; ++k) json["events"].push_back(json["events"][0]);
+  EXPECT_EQ(count_of(log_page(json.dump(), "a.json"), "class=\"wide long\""), 1) << "the events";
 }
 
 TEST(LogPage, HostileNamesStayText) {

@@ -15,10 +15,13 @@ namespace {
 // As many rows as one scrolls through; the JSON has them all.
 constexpr std::size_t kMostNotUsed = 200;
 
+// A list of many rows is scrolled, so that what follows it is found.
 std::string scrolled(const std::string& head, const std::string& rows) {
+  constexpr std::ptrdiff_t kManyRows = 15;
+  const bool is_long = std::count(rows.begin(), rows.end(), '\n') > kManyRows;
   return fmt::format(
-      "<div class=\"wide\" tabindex=\"0\"><table><thead><tr>{}</tr></thead><tbody>\n{}</tbody></table></div>\n", head,
-      rows);
+      "<div class=\"wide{}\" tabindex=\"0\"><table><thead><tr>{}</tr></thead><tbody>\n{}</tbody></table></div>\n",
+      is_long ? " long" : "", head, rows);
 }
 
 std::string column_heads(std::initializer_list<const char*> names) {
@@ -61,7 +64,7 @@ std::string consistency_rows(const LogResults& results) {
     const LogTracker& tracker = results.trackers[i];
     rows += fmt::format(
         "<tr><th scope=\"row\"><svg class=\"swatch\" viewBox=\"0 0 28 10\" aria-hidden=\"true\"><path class=\"line {}\" "
-        "d=\"M2 5h24\"/></svg>{}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td>",
+        "d=\"M2 5h24\"/></svg>{}</th><td>{}</td><td>{}</td><td>{}</td><td class=\"words\">{}</td><td>{}</td><td>{}</td>",
         tracker_look(i).name, escaped(tracker.name), shown(tracker.steps, 9), shown(tracker.nis_ratio),
         interval_of(tracker.nis_low, tracker.nis_high), words_of(claim_of(tracker)), shown(tracker.correlation, 3),
         interval_of(-tracker.correlation_limit, tracker.correlation_limit));
@@ -105,7 +108,7 @@ int digits_beside(double value, double sigma) {
       std::clamp(std::floor(std::log10(std::abs(value))) - std::floor(std::log10(sigma)) + 2.0, 1.0, kMost));
 }
 
-std::string last_estimates(const LogResults& results) {
+std::string last_estimates(const LogResults& results, int level) {
   std::vector<std::string> components;
   for (const LogTracker& tracker : results.trackers)
     for (const LogTracker::Last& last : tracker.last)
@@ -135,10 +138,10 @@ std::string last_estimates(const LogResults& results) {
       }
       rows += fmt::format("<td>{}</td></tr>\n", escaped(last.status));
     }
-  return "<h2>Last estimates</h2>\n" + scrolled(head, rows);
+  return heading("Last estimates", level) + scrolled(head, rows);
 }
 
-std::string events_of(const LogResults& results) {
+std::string events_of(const LogResults& results, int level) {
   std::string rows;
   for (const LogEvent& event : results.events) {
     std::string words = event.event;
@@ -147,7 +150,7 @@ std::string events_of(const LogResults& results) {
                         shown(event.time_s, 12), escaped(event.tracker), escaped(words), shown(event.value, 6));
   }
   if (rows.empty()) return {};
-  return "<h2>What the trackers noticed</h2>\n" +
+  return heading("What the trackers noticed", level) +
          scrolled(column_heads({"time (s)", "tracker", "what", "value"}), rows);
 }
 
@@ -160,7 +163,8 @@ const char* reason_of(const std::string& why) {
   return "";
 }
 
-std::string not_used_of(const LogResults& results) {
+std::string not_used_of(const LogResults& results, int level) {
+  const std::string title = heading("What was not used", level);
   std::string rows;
   std::size_t count = 0;
   for (const LogTracker& tracker : results.trackers)
@@ -170,9 +174,8 @@ std::string not_used_of(const LogResults& results) {
                           shown(one.time_s, 12), escaped(tracker.name), escaped(one.why), reason_of(one.why),
                           shown(one.nis));
     }
-  if (rows.empty()) return "<h2>What was not used</h2>\n<p>Every measurement was used by every tracker.</p>\n";
-  std::string text = "<h2>What was not used</h2>\n" +
-                     scrolled(column_heads({"time (s)", "tracker", "measurement", "which is", "NIS"}), rows);
+  if (rows.empty()) return title + "<p>Every measurement was used by every tracker.</p>\n";
+  std::string text = title + scrolled(column_heads({"time (s)", "tracker", "measurement", "which is", "NIS"}), rows);
   if (count > kMostNotUsed) text += fmt::format("<p class=\"note\">The first {} of {}.</p>\n", kMostNotUsed, count);
   return text;
 }
@@ -190,10 +193,10 @@ std::string warnings_of(const LogResults& results) {
   return text;
 }
 
-// innovations: plots of them.
-std::string found_sections(const LogResults& results, const std::vector<Plot>& innovations) {
-  return last_estimates(results) + events_of(results) + not_used_of(results) +
-         section("What was not expected", innovations);
+// innovations: plots of them. level: of the headings.
+std::string found_sections(const LogResults& results, const std::vector<Plot>& innovations, int level) {
+  return last_estimates(results, level) + events_of(results, level) + not_used_of(results, level) +
+         section("What was not expected", innovations, level);
 }
 
 }  // namespace
@@ -205,10 +208,10 @@ std::string log_answer(const LogResults& results) {
     for (const LogTracker& tracker : results.trackers)
       if (claim_of(tracker) == claim) names += (names.empty() ? "" : ", ") + tracker.name;
     if (names.empty()) continue;
-    const char* says = claim == Claim::consistent  ? "Innovations as large as claimed"
-                       : claim == Claim::too_small ? "Larger than claimed"
-                                                   : "Smaller than claimed";
-    text += fmt::format("{}{}: {}.", text.empty() ? "" : " ", says, names);
+    const char* size = claim == Claim::consistent  ? "as large as"
+                       : claim == Claim::too_small ? "larger than"
+                                                   : "smaller than";
+    text += fmt::format("{} {} claimed: {}.", text.empty() ? "Innovations" : " Innovations", size, names);
   }
   return text.empty() ? "No tracker has innovations by which it could be judged." : text;
 }
@@ -221,7 +224,7 @@ std::string log_page(std::string_view text, const std::string& file) {
   body += warnings_of(results) + consistency_of(results) + foretelling_section(results.foretelling);
   std::vector<Plot> plots = log_plots(results), first, rest;
   for (Plot& plot : plots) (plot.id == "tracks" ? first : rest).push_back(std::move(plot));
-  body += section("Tracks", first) + found_sections(results, rest);
+  body += section("Tracks", first) + found_sections(results, rest, 2);
   body += fmt::format("<footer>Made by truebearing from {} (truebearing {}).</footer>\n", escaped(file),
                       escaped(results.version.empty() ? "of an unknown version" : results.version));
   return html_page(results.log, body);
@@ -231,10 +234,10 @@ std::string on_log_section(const Results& results, const std::string& id) {
   if (!results.on_log) return {};
   const LogResults& log = *results.on_log;
   const bool of_several = std::isfinite(log.run) && results.runs > 1.0;
-  return fmt::format("<h2>What the log says without its truth</h2>\n<p>{}{}</p>\n<p>{}</p>\n",
-                     of_several ? fmt::format("Of run {}: ", shown(log.run, 9)) : "", measurements_of(log),
-                     escaped(log_answer(log))) +
-         warnings_of(log) + consistency_of(log) + found_sections(log, log_plots(log, id));
+  return heading("What the log says without its truth") +
+         fmt::format("<p>{}{}</p>\n<p>{}</p>\n", of_several ? fmt::format("Of run {}: ", shown(log.run, 9)) : "",
+                     measurements_of(log), escaped(log_answer(log))) +
+         warnings_of(log) + consistency_of(log) + found_sections(log, log_plots(log, id), 3);
 }
 
 std::vector<PlotFile> log_plot_files(std::string_view text, const std::string& file) {

@@ -43,8 +43,12 @@ std::string figures_markup(const std::vector<Plot>& plots) {
   return text + "</div>\n";
 }
 
-std::string section(const std::string& title, const std::vector<Plot>& plots) {
-  return plots.empty() ? "" : fmt::format("<h2>{}</h2>\n{}", escaped(title), figures_markup(plots));
+std::string heading(const std::string& title, int level) {
+  return fmt::format("<h{}>{}</h{}>\n", level, escaped(title), level);
+}
+
+std::string section(const std::string& title, const std::vector<Plot>& plots, int level) {
+  return plots.empty() ? "" : heading(title, level) + figures_markup(plots);
 }
 
 std::string folded(const std::string& title, const std::string& markup) {

@@ -16,8 +16,11 @@ std::string html_page(const std::string& title, const std::string& body);
 /// Plots, each with its sentence and its numbers; empty where there are none.
 std::string figures_markup(const std::vector<Plot>& plots);
 
-/// The same under a heading.
-std::string section(const std::string& title, const std::vector<Plot>& plots);
+/// "<h2>Title</h2>" and the end of its line; level: of the heading.
+std::string heading(const std::string& title, int level = 2);
+
+/// Plots under a heading; empty where there are none.
+std::string section(const std::string& title, const std::vector<Plot>& plots, int level = 2);
 
 /// Markup that unfolds; empty where there is none.
 std::string folded(const std::string& title, const std::string& markup);

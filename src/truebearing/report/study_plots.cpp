@@ -9,6 +9,7 @@
 #include "truebearing/evaluation/metric.hpp"
 #include "truebearing/report/axis.hpp"
 #include "truebearing/report/correction_plots.hpp"
+#include "truebearing/report/log_page.hpp"
 #include "truebearing/report/markup.hpp"
 #include "truebearing/report/plot_clock.hpp"
 
@@ -262,6 +263,11 @@ std::vector<Plot> time_plots(const ResultFigures& figures, const std::string& id
 
 std::vector<Plot> run_plots(const ResultFigures& figures, const std::string& id) {
   std::vector<Plot> plots;
+  const bool has_several =
+      std::any_of(figures.trackers.begin(), figures.trackers.end(), [](const ResultTracker& tracker) {
+        return !tracker.quantities.empty() && tracker.quantities.front().run_rmse.size() > 1;
+      });
+  if (!has_several) return plots;
   for (const std::string& quantity : quantity_names(figures))
     add_unless_empty(plots, share_plot(figures, quantity, id));
   for (std::size_t i = 0; i < figures.pairs.size(); ++i)

@@ -13,7 +13,7 @@ namespace truebearing {
 /// Of all runs, or of a set of them; `id` begins the plots' names. What there are figures of at given times stands in
 /// metric_plots() instead.
 std::vector<Plot> time_plots(const ResultFigures& figures, const std::string& id);
-/// Of each run's RMSE, where the results have them.
+/// Of each run's RMSE, where the results have them and runs are several.
 std::vector<Plot> run_plots(const ResultFigures& figures, const std::string& id);
 /// Of the figures at the times of the scoring, those of the first importance first.
 std::vector<Plot> metric_plots(const ResultFigures& figures, const std::string& id);

@@ -46,14 +46,14 @@ const std::string& page_style() {
 body { margin: 0; background: var(--paper); color: var(--ink); font: 16px/1.5 system-ui, "Segoe UI", Helvetica, Arial, sans-serif; }
 main { max-width: 1240px; margin: 0 auto; padding: 20px 16px 48px; }
 h1 { font-size: 1.7rem; line-height: 1.2; margin: 0.4em 0 0.2em; } h2 { font-size: 1.25rem; margin: 1.8em 0 0.5em; }
-h3 { font-size: 1rem; margin: 1.2em 0 0.3em; } h1, h2, h3 { overflow-wrap: anywhere; }
+h3 { font-size: 1rem; margin: 1.2em 0 0.3em; } h1, h2, h3, p, figcaption, footer { overflow-wrap: anywhere; }
 .question { color: var(--soft); margin: 0.3em 0; } .answer { font-size: 1.2rem; margin: 0.3em 0 1em; max-width: 60em; }
 .where, .note { color: var(--soft); font-size: 0.9rem; margin: 0.3em 0; }
-.wide { overflow-x: auto; } table { border-collapse: collapse; font-size: 0.9rem; font-variant-numeric: tabular-nums; }
+.wide { overflow-x: auto; } .long { max-height: 420px; overflow: auto; } table { border-collapse: collapse; font-size: 0.9rem; font-variant-numeric: tabular-nums; }
 th, td { padding: 4px 10px; text-align: right; border-bottom: 1px solid var(--grid); white-space: nowrap; }
 th:first-child, td:first-child { text-align: left; } thead th { color: var(--soft); font-weight: 600; vertical-align: bottom; }
 tbody th { font-weight: 600; } .se { color: var(--soft); } .best { background: var(--best); font-weight: 700; }
-td.prose { white-space: normal; text-align: left; min-width: 46em; } .wide + .plots, .wide + .wide { margin-top: 14px; }
+td.words { white-space: normal; min-width: 9em; } td.prose { white-space: normal; text-align: left; min-width: 46em; } .wide + .plots, .wide + .wide { margin-top: 14px; }
 .tag { font-size: 0.75rem; color: var(--soft); border: 1px solid var(--soft); border-radius: 4px; padding: 0 4px; margin-left: 6px; }
 .swatch { display: inline-block; width: 28px; height: 10px; margin-right: 8px; }
 .plots { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 480px), 1fr)); gap: 20px; align-items: start; }
@@ -71,7 +71,7 @@ footer { margin-top: 3em; color: var(--soft); font-size: 0.85rem; }
   svg.plot { font-size: 14px; min-width: 520px; } svg.plot .tick { font-size: 14px; } figure { overflow-x: auto; } }
 @media print { :root, body { font-size: 10pt; } main { max-width: none; padding: 0; } figure, table { break-inside: avoid; }
   .plots { grid-template-columns: 1fr 1fr; gap: 8px; } figure { border: none; padding: 4px; } details, .player { display: none; }
-  .wide { overflow: visible; } table { font-size: 7.5pt; } th, td { padding: 2px 5px; } thead th { white-space: normal; } .tag { font-size: 6pt; } }
+  .wide { overflow: visible; max-height: none; } table { font-size: 7.5pt; } th, td { padding: 2px 5px; } thead th { white-space: normal; } .tag { font-size: 6pt; } }
 )";
   return style;
 }

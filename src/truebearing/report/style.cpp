@@ -67,7 +67,7 @@ summary:focus-visible { outline: 2px solid var(--s0); outline-offset: 2px; }
 .player output { color: var(--soft); font-size: 0.9rem; min-width: 4em; text-align: right; }
 .player button { font: inherit; font-size: 0.9rem; color: var(--ink); background: var(--card); border: 1px solid var(--soft); border-radius: 6px; padding: 2px 12px; cursor: pointer; }
 footer { margin-top: 3em; color: var(--soft); font-size: 0.85rem; }
-@media (max-width: 520px) { body { font-size: 15px; } figure { padding: 8px 4px; border-radius: 0; } main { padding: 12px 8px 32px; }
+@media (max-width: 520px) { body { font-size: 15px; } td.words { white-space: nowrap; } figure { padding: 8px 4px; border-radius: 0; } main { padding: 12px 8px 32px; }
   svg.plot { font-size: 14px; min-width: 520px; } svg.plot .tick { font-size: 14px; } figure { overflow-x: auto; } }
 @media print { :root, body { font-size: 10pt; } main { max-width: none; padding: 0; } figure, table { break-inside: avoid; }
   .plots { grid-template-columns: 1fr 1fr; gap: 8px; } figure { border: none; padding: 4px; } details, .player { display: none; }

@@ -2,6 +2,7 @@
 #include "truebearing/study/correction_spec.hpp"
 
 #include <algorithm>
+#include <fmt/format.h>
 #include <toml++/toml.h>
 
 #include "truebearing/core/constants.hpp"

@@ -18,7 +18,7 @@
 #include "truebearing/correction/correction_inputs.hpp"
 #include "truebearing/evaluation/scorer.hpp"
 #include "truebearing/evaluation/target_record.hpp"
-#include "truebearing/tracker/smoothing_tracker.hpp"
+#include "truebearing/tracker/smoother.hpp"
 
 namespace truebearing {
 namespace {
@@ -90,7 +90,7 @@ class RowMaker {
   }
 
   Rows rows_by_smoother(const Recording& recording, const RunKey& key) {
-    const auto& smoother = dynamic_cast<const SmoothingTracker&>(ensemble_.tracker(teacher_));
+    const auto& smoother = dynamic_cast<const Smoother&>(ensemble_.tracker(teacher_));
     RandomStream random(key, StreamId::learning);
     Rows rows;
     ensemble_.reset();

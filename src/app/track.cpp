@@ -293,7 +293,7 @@ void smooth_all(Study& study, const TrackArguments& options) {
   });
   if (!study.looks_back())
     throw InputError(options.study, "shows no filter that there is a smoother of",
-                     "a filter or an imm without output_pull and ahead_s");
+                     "a filter, an imm or a bank, without output_pull and ahead_s");
 }
 
 void track(const TrackArguments& options) {

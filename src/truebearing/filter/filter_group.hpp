@@ -34,6 +34,10 @@ class FilterGroup {
                       std::span<double> gained) = 0;
   /// x = sum w_i x_i / sum w, P = sum w_i / sum w (P_i + (x_i - x)(x_i - x)'), over the members with a weight.
   virtual void mix(std::span<const double> weights, double sum, BoundedVector& x, BoundedMatrix& P) const = 0;
+  /// x (n) and P (n x n) of member i.
+  virtual void estimate(std::size_t i, BoundedVector& x, BoundedMatrix& P) const = 0;
+  /// A state under member i's filter and motion, not begun, for those who look back (backward_step.hpp).
+  virtual std::unique_ptr<TrackedState> state_of(std::size_t i) const = 0;
   /// Becomes a copy of `other`, which was made by fresh() from this one or from the same.
   virtual void assign(const FilterGroup& other) = 0;
   virtual std::unique_ptr<FilterGroup> fresh() const = 0;
@@ -117,6 +121,14 @@ class FilterGroupOf final : public FilterGroup {
     }
     x = mean;
     P = spread;
+  }
+
+  void estimate(std::size_t i, BoundedVector& x, BoundedMatrix& P) const override {
+    x = members_[i].x();
+    P = members_[i].P();
+  }
+  std::unique_ptr<TrackedState> state_of(std::size_t i) const override {
+    return std::make_unique<FilterState<Filter>>(motions_[motion_of_[i]]);
   }
 
   void assign(const FilterGroup& other) override { members_ = static_cast<const FilterGroupOf&>(other).members_; }

@@ -42,6 +42,7 @@ FilterBank::Members FilterBank::another() const {
 }
 
 std::span<const StepRecord> FilterBank::step(const Measurement& measurement) {
+  used_ = false;
   const StreamGuard::Verdict verdict = guard_.examine(measurement, sensors_.front()->has_value(measurement));
   if (verdict == StreamGuard::Verdict::repeated || verdict == StreamGuard::Verdict::out_of_order) {
     set_status(StepStatus::rejected, record_);
@@ -61,6 +62,7 @@ std::span<const StepRecord> FilterBank::step(const Measurement& measurement) {
   if (record_.status == StepStatus::failed) ++guard_.counts.failed;
   if (record_.status != StepStatus::ok) return publish(shown_);
   std::swap(members_, shown_);
+  used_ = true;
   used_time_s_ = measurement.time_s;
   return publish(members_);
 }
@@ -71,7 +73,7 @@ void FilterBank::reset() {
   record_.space = space_;
   guess_.reset();
   used_time_s_ = start_time_s_;
-  begun_ = false;
+  begun_ = used_ = false;
   if (suppose_) return;
   begin();
   begun_ = true;
@@ -97,7 +99,7 @@ bool FilterBank::begin() {
 
 std::span<const StepRecord> FilterBank::start_from(const Measurement& measurement) {
   if (!suppose_(measurement, guess_, hypotheses_) || !begin()) return {};
-  begun_ = true;
+  begun_ = used_ = true;
   used_time_s_ = measurement.time_s;
   record_.status = StepStatus::ok;
   return publish(members_);

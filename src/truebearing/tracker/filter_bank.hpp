@@ -50,6 +50,13 @@ class FilterBank final : public Tracker {
   std::optional<Measured> measures() const override { return sensors_.front()->measured(); }
   TrackerCounts counts() const override { return guard_.counts; }
 
+  // For those who look back. The members as they are at the last measurement that was used, or as the bank began.
+  bool has_begun() const { return begun_; }
+  bool has_used() const { return used_; }  ///< the last measurement
+  double used_time_s() const { return used_time_s_; }
+  const FilterGroup& filters() const { return *members_.filters; }
+  std::span<const double> log_weights() const { return members_.log_weights; }  ///< up to a common constant
+
  private:
   struct Members {
     std::unique_ptr<FilterGroup> filters;
@@ -71,6 +78,7 @@ class FilterBank final : public Tracker {
   Supposition suppose_;  // empty where the hypotheses stand beforehand
   StreamGuard guard_;
   bool begun_ = false;
+  bool used_ = false;
   Members members_;  // at the last measurement that was used
   Members shown_;    // at the last step
   double used_time_s_ = 0.0;

@@ -18,19 +18,11 @@
 #include "truebearing/core/constants.hpp"
 #include "truebearing/filter/backward_step.hpp"
 #include "truebearing/tracker/filter_tracker.hpp"
-#include "truebearing/tracker/tracker.hpp"
+#include "truebearing/tracker/smoother.hpp"
 
 namespace truebearing {
 
-/// What a smoother knows of one of its steps beside the record.
-struct SmoothingAccount {
-  bool looked_back = false;       ///< else the record is the filter's own
-  BoundedVector filter_variance;  ///< (n), the diagonal of P as the filter published it
-  double nis = kNaN;              ///< of the filter's innovation, where it had one
-  int measured = 0;               ///< its components
-};
-
-class SmoothingTracker final : public Tracker {
+class SmoothingTracker final : public Smoother {
  public:
   /// lag_s > 0, infinite for the fixed interval. Throws std::invalid_argument where the filter publishes something other
   /// than its estimate: with output_pull or ahead_s.
@@ -46,8 +38,7 @@ class SmoothingTracker final : public Tracker {
   RecordBlocks blocks() const override { return {.mode_probabilities = filter_->blocks().mode_probabilities}; }
   TrackerCounts counts() const override { return foreseen_ ? counts_ : filter_->counts(); }
 
-  /// Of the last step, where it has a record.
-  const SmoothingAccount* account() const { return account_; }
+  const SmoothingAccount* account() const override { return account_; }
 
  private:
   // An estimate after a measurement, or that a track began with. Kept small: a log may be long.

@@ -66,5 +66,17 @@ TEST(SpaceCorrection, IsNoWorseWhereTargetsKeepTheirVelocity) {
   EXPECT_NEAR(comparison.tracker("imm_nfnn")->nees, 6.0, 1.0);
 }
 
+// Of angles alone: what is believed of the range decides.
+TEST(AnglesAlone, ABankOfRangesIsBetterAndAsSureAsItMayBe) {
+  const Comparison comparison = run("angles_only", 150);
+  for (const char* quantity : {"position_m", "velocity_mps"}) {
+    for (const char* single : {"ekf", "ukf"}) expect_better(comparison, "bank", single, quantity);
+    expect_better(comparison, "bank_smoothed", "bank", quantity);
+  }
+  EXPECT_NEAR(comparison.tracker("bank")->nees, 6.0, 1.5);
+  EXPECT_NEAR(comparison.tracker("bank_smoothed")->nees, 6.0, 1.5);
+  EXPECT_GT(comparison.tracker("ekf")->nees, 9.0) << "the partner: one filter is too sure of its range";
+}
+
 }  // namespace
 }  // namespace truebearing::range_rate_acceptance_test

@@ -110,6 +110,30 @@ TEST(SpaceFlightScenario, MeasuresPositionsAndAnglesToo) {
             (std::vector<std::string>{"bearing_deg", "elevation_deg"}));
 }
 
+// From the ship, whose place the measurement carries; the truth is where it was without it.
+TEST(SpaceFlightScenario, AShipCarriesTheSensor) {
+  const std::string ship = "own_ship = { speed_mps = 15.0, course_deg = 90.0 }\n";
+  const Recording still = scenario(kText)->simulate({5, Role::evaluation, 0});
+  const Recording carried = scenario(ship + kText)->simulate({5, Role::evaluation, 0});
+  for (std::size_t k = 0; k < still.measurements.size(); ++k) {
+    ASSERT_EQ(carried.truth[0].x[k], still.truth[0].x[k]);
+    ASSERT_TRUE(carried.measurements[k].sensor);
+    EXPECT_NEAR(carried.measurements[k].sensor->position_m.x(), 15.0 * 0.5 * double(k), 1e-9);
+    EXPECT_FALSE(still.measurements[k].sensor);
+    BoundedVector x = still.truth[0].x[k];
+    const SightInSpace<double> from_land(x.head<3>());
+    const double rate_from_land = from_land.range_rate(x.tail<3>());
+    x[0] -= 15.0 * 0.5 * double(k);
+    x[3] -= 15.0;
+    const SightInSpace<double> from_ship(x.head<3>());
+    const BoundedVector difference = carried.measurements[k].z - still.measurements[k].z;
+    EXPECT_NEAR(difference[0], from_ship.range_m - from_land.range_m, 1e-6);
+    EXPECT_NEAR(wrap_pi(difference[1] - from_ship.bearing_rad + from_land.bearing_rad), 0.0, 1e-9);
+    EXPECT_NEAR(difference[2], from_ship.elevation_rad - from_land.elevation_rad, 1e-9);
+    EXPECT_NEAR(difference[3], from_ship.range_rate(x.tail<3>()) - rate_from_land, 1e-6);
+  }
+}
+
 TEST(SpaceFlightScenario, SaysWhatIsWrong) {
   const auto error_of = [](const std::string& what, const std::string& by) {
     return error_message([&] { scenario(replaced(kText, what, by)); });
@@ -118,6 +142,14 @@ TEST(SpaceFlightScenario, SaysWhatIsWrong) {
   EXPECT_THAT(error_of("range_rate_correlation = 0.6", "range_rate_correlation = 1.0"),
               HasSubstr("range_rate_correlation"));
   EXPECT_THAT(error_of("up_m = 3000.0", "height_m = 3000.0"), HasSubstr("up_m"));
+  const std::string sensor = std::string(kText).substr(std::string(kText).find("sensor ="));
+  const std::string ship = "own_ship = { speed_mps = 15.0, course_deg = 90.0 }\n";
+  EXPECT_THAT(error_of(sensor, ship + "sensor = { position_sigma_m = 30.0 }"), HasSubstr("sensor"));
+  EXPECT_THAT(error_message([&] {
+                scenario(replaced(replaced(kText, sensor, ship + "sensor = { position_sigma_m = 30.0 }"),
+                                  "\"range_bearing_elevation_rate\"", "\"space\""));
+              }),
+              HasSubstr("own_ship"));
   EXPECT_THAT(error_of("acceleration_mps2 = 3.0", "acceleration_mps2 = 0.0"), HasSubstr("acceleration_mps2"));
 }
 

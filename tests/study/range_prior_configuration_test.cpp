@@ -16,9 +16,9 @@ namespace {
 using testing::error_message;
 using ::testing::HasSubstr;
 
-RangePrior read(const std::string& text) {
+RangePrior read(const std::string& text, int dimensions = 2) {
   const SharedTable table = parse_toml(text, "study.toml");
-  return read_range_prior(TableReader(table, "study.toml", "trackers.mine.start"));
+  return read_range_prior(TableReader(table, "study.toml", "trackers.mine.start"), dimensions);
 }
 
 TEST(RangePriorConfiguration, ReadsARangeAndASpreadOfVelocities) {
@@ -28,6 +28,14 @@ TEST(RangePriorConfiguration, ReadsARangeAndASpreadOfVelocities) {
   EXPECT_EQ(prior.velocity_sigma_mps, 3.0);
   EXPECT_FALSE(prior.between || prior.course);
   EXPECT_TRUE(prior.suffices_with({}));
+}
+
+TEST(RangePriorConfiguration, ReadsAClimb) {
+  const std::string text = "kind = \"range\"\nrange_m = 5e3\nrange_sigma_m = 2e3\nvelocity_sigma_mps = 60.0\n";
+  EXPECT_EQ(read(text + "climb_sigma_mps = 6.0", 3).climb_sigma_mps, 6.0);
+  EXPECT_TRUE(std::isnan(read(text, 3).climb_sigma_mps));
+  EXPECT_THAT(error_message([&] { read(text + "climb_sigma_mps = 0.0", 3); }), HasSubstr("climb_sigma_mps"));
+  EXPECT_THAT(error_message([&] { read(text + "climb_sigma_mps = 6.0"); }), HasSubstr("climb_sigma_mps"));
 }
 
 TEST(RangePriorConfiguration, WaitsForAGuessWhereItSaysSo) {

@@ -19,6 +19,8 @@ Recording SpaceFlightScenario::simulate(const RunKey& key) const {
   for (const Look& look : looks) times_s.push_back(look.time_s - looks.front().time_s);
   const Eigen::Matrix2Xd height = p.vertical.fly(times_s, up_m, scenario);
   const FlownTrack track = p.flight.fly(times_s, scenario);
+  std::optional<VesselPath> own_ship;
+  if (p.own_ship) own_ship = p.own_ship->draw(Eigen::Vector2d::Zero(), scenario);
 
   Recording recording;
   recording.measured = p.sensor.output->measured.components;
@@ -29,7 +31,15 @@ Recording SpaceFlightScenario::simulate(const RunKey& key) const {
     const Eigen::Vector4d plane = track.states.col(column);
     SpaceOutput::State x;
     x << east_m + plane[0], north_m + plane[1], height(0, column), plane[2], plane[3], height(1, column);
-    Measurement taken = p.sensor.measure(looks[k].time_s, x, measurement);
+    SpaceOutput::State seen = x;  // from the sensor
+    std::optional<SensorState> from;
+    if (own_ship) {
+      from = own_ship->at(times_s[k]).state;
+      seen.head<2>() -= from->position_m;
+      seen.segment<2>(3) -= from->velocity_mps;
+    }
+    Measurement taken = p.sensor.measure(looks[k].time_s, seen, measurement);
+    if (from) taken.sensor = from;
     if (!p.looks.keeps(looks[k])) continue;
     if (!looks[k].seen) taken.z.setConstant(kNaN);
     recording.counts.missing += !looks[k].seen;
@@ -60,6 +70,13 @@ std::unique_ptr<Scenario> read_space_flight_scenario(TableReader& table) {
   start.finish();
   parameters.sensor = read_space_sensor(table.table("sensor"), output);
   parameters.looks = read_look_schedule(table);
+  if (std::optional<TableReader> own_ship = table.table_if_present("own_ship")) {
+    if (output == "space")
+      throw table.error("own_ship", "carries a sensor of positions, which are the same from anywhere",
+                        "output = \"range_bearing_elevation\" or \"bearing_elevation\"");
+    parameters.own_ship = read_vessel(*own_ship);
+    own_ship->finish();
+  }
   return std::make_unique<SpaceFlightScenario>(std::move(parameters));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A flight in space, seen from a sensor at the origin: a flight in the plane ([flight], planar_flight.hpp) with climbs
+// A flight in space, seen from a sensor at the origin, or on a vessel that begins there ([own_ship], vessel.hpp): a flight in the plane ([flight], planar_flight.hpp) with climbs
 // above it ([climb], vertical_flight.hpp), from a place that is drawn ([start] east_m, north_m, up_m).
 #pragma once
 
@@ -12,6 +12,7 @@
 #include "truebearing/simulation/scenario.hpp"
 #include "truebearing/simulation/space_sensor.hpp"
 #include "truebearing/simulation/vertical_flight.hpp"
+#include "truebearing/simulation/vessel.hpp"
 
 namespace truebearing {
 
@@ -22,6 +23,7 @@ struct SpaceFlightParameters {
   VerticalFlight vertical;                               ///< [climb]
   Distribution east_m = 0.0, north_m = 0.0, up_m = 0.0;  ///< [start]
   SpaceSensor sensor;                                    ///< [sensor]
+  std::optional<VesselParameters> own_ship;              ///< [own_ship], at height 0; carries the sensor
   LookSchedule looks;                                    ///< [looks]
 };
 

@@ -51,7 +51,7 @@ Start read_start(TableReader& tracker, const MeasurementChoice& measurement, int
   if (measurement.sensor->tells_position()) kinds.insert(kinds.end(), {"one_point", "two_point"});
   if (measurement.sensor->tells_bearing()) kinds.insert(kinds.end(), {"range", "hand_over"});
   const std::string kind = table.choice("kind", kinds);
-  if (kind == "range") return read_range_prior(tracker.table("start"));
+  if (kind == "range") return read_range_prior(tracker.table("start"), measurement.dimensions());
   Start start;
   if (kind == "prior") {
     start = read_prior_start(table, states);

@@ -159,7 +159,7 @@ std::unique_ptr<Tracker> make_range_bank(TableReader& table) {
     throw table.error("kind", "is \"range_bank\", which supposes what bearings do not tell",
                       "measurement.model = \"bearing\" or \"bearing_frequency\"");
   const auto motion = read_motion(table.table("motion"), read_layout(table, measurement));
-  const RangeHypotheses hypotheses = read_range_hypotheses(table);
+  const RangeHypotheses hypotheses = read_range_hypotheses(table, measurement.dimensions());
   const FilterKind filter =
       read_filter(table, measurement, true, {"kalman", "unscented", "log_polar", "modified_gain"});
   static_cast<void>(state_under(table, filter, motion));

@@ -25,7 +25,7 @@ RangePrior::Course read_course(TableReader table, bool guessed) {
 
 }  // namespace
 
-RangePrior read_range_prior(TableReader table) {
+RangePrior read_range_prior(TableReader table, int dimensions) {
   table.choice("kind", {"range"});
   RangePrior prior;
   const bool guessed = table.boolean_or("guess", false);
@@ -44,13 +44,15 @@ RangePrior read_range_prior(TableReader table) {
     prior.course = read_course(table.table("course"), guessed);
   else
     prior.velocity_sigma_mps = table.number("velocity_sigma_mps", kPositive);
+  if (dimensions == 3 && table.has("climb_sigma_mps"))
+    prior.climb_sigma_mps = table.number("climb_sigma_mps", kPositive);
   table.finish();
   return prior;
 }
 
-RangeHypotheses read_range_hypotheses(TableReader& table) {
+RangeHypotheses read_range_hypotheses(TableReader& table, int dimensions) {
   constexpr int kMost = 10000;
-  RangeHypotheses hypotheses{read_range_prior(table.table("start"))};
+  RangeHypotheses hypotheses{read_range_prior(table.table("start"), dimensions)};
   hypotheses.ranges = static_cast<int>(table.integer("ranges", 1, kMost));
   hypotheses.velocity_cells = static_cast<int>(table.integer_or("velocity_cells", 1, 1, 360));
   hypotheses.least_range_m = table.number_or("least_range_m", 0.0, kNonNegative);

@@ -15,10 +15,11 @@ namespace truebearing {
 ///     between_m = [low, high]           where the ranges of a family lie: a matched start
 ///     velocity_sigma_mps                per axis about zero; or
 ///     course = { from_bearing_deg, sigma_deg, speed_mps, speed_sigma_mps }   the last two not beside guess = true
+///     climb_sigma_mps                   of a target in space, where dimensions is 3
 /// Asks for all keys of `table` and finishes it.
-RangePrior read_range_prior(TableReader table);
+RangePrior read_range_prior(TableReader table, int dimensions = 2);
 
 /// Of a bank of filters on that belief: start, ranges, velocity_cells, speed_between_mps, least_range_m.
-RangeHypotheses read_range_hypotheses(TableReader& tracker);
+RangeHypotheses read_range_hypotheses(TableReader& tracker, int dimensions = 2);
 
 }  // namespace truebearing

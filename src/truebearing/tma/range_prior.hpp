@@ -52,6 +52,8 @@ struct RangePrior {
     double sigma_rad;
   };
   std::optional<Course> course;
+  /// In space: of the climb, mean zero; NaN: as uncertain as a component of the velocity along the ground.
+  double climb_sigma_mps = std::numeric_limits<double>::quiet_NaN();
 
   /// False where neither this nor the guess says what range, or with a course what speed, to believe in. Nothing can
   /// start then.

@@ -43,7 +43,7 @@ std::optional<PriorStart> FilterTracker::start_at(const std::optional<Measuremen
     if (!sight) return {};
     const GaussianState plane = prior->state(sight->bearing_rad, sight->sigma_rad, sight->from, guess_);
     const std::optional<PriorStart> start = sensor_->believe(plane, measurement);
-    return start ? std::optional(lengthened(*start, n, 0.0)) : std::nullopt;
+    return start ? std::optional(lengthened(with_climb(*start, prior->climb_sigma_mps), n, 0.0)) : std::nullopt;
   }
   const std::optional<PositionFix> fix = sensor_->fix(measurement);
   if (!fix) return {};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "truebearing/tracker/range_bank.hpp"
 
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -21,12 +22,16 @@ std::unique_ptr<Tracker> range_bank(const StateSpace& space, FilterKind filter,
                                                        std::span<FilterBank::Hypothesis> bank) {
     if (!hypotheses.prior.suffices_with(guess)) return false;
     const std::optional<Sight> sight = looked_at->sight(first);
+    // Sectors of courses know more of the velocity along the ground than of the climb.
+    const double climb_sigma_mps = std::isnan(hypotheses.prior.climb_sigma_mps) && hypotheses.velocity_cells > 1
+                                       ? hypotheses.prior.velocity_sigma_mps
+                                       : hypotheses.prior.climb_sigma_mps;
     for (std::size_t i = 0; i < bank.size(); ++i) {
       const RangeHypotheses::Weighted weighted =
           hypotheses.at(static_cast<int>(i), sight->bearing_rad, sight->sigma_rad, sight->from, guess);
       const std::optional<PriorStart> start = looked_at->believe(weighted.state, first);
       if (!start) return false;
-      const PriorStart whole = lengthened(*start, states, 0.0);
+      const PriorStart whole = lengthened(with_climb(*start, climb_sigma_mps), states, 0.0);
       bank[i] = {whole.x, whole.P, 0, weighted.log_weight};
     }
     return true;

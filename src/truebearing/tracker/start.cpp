@@ -17,6 +17,11 @@ PriorStart one_point_state(PositionFix fix, const OnePointStart& one_point) {
   return start;
 }
 
+PriorStart with_climb(PriorStart start, double climb_sigma_mps) {
+  if (start.x.size() == 6 && std::isfinite(climb_sigma_mps)) start.P(5, 5) = climb_sigma_mps * climb_sigma_mps;
+  return start;
+}
+
 PriorStart two_point_state(const PositionFix& first, const PositionFix& second, double dt_s) {
   const Eigen::Index d = second.z.size();
   PriorStart start{BoundedVector(2 * d), BoundedMatrix(2 * d, 2 * d)};

@@ -46,6 +46,8 @@ struct PositionFix {
 };
 
 PriorStart one_point_state(PositionFix fix, const OnePointStart& start);
+/// With the climb that the prior believes in, where it does and the state is one in space: its component 5.
+PriorStart with_climb(PriorStart start, double climb_sigma_mps);
 /// dt_s > 0.
 PriorStart two_point_state(const PositionFix& first, const PositionFix& second, double dt_s);
 

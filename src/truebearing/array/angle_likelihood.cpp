@@ -6,10 +6,13 @@
 #include <numbers>
 
 #include "truebearing/array/angle_likelihood_kernels.hpp"
+#include "truebearing/array/column_product.hpp"
 #include "truebearing/core/angle.hpp"
 
 namespace truebearing {
 namespace {
+
+static_assert(kernels::kMostSignals == kMaxSignals);
 
 // Twice the log likelihood that a signal adds, with Ns snapshots: a' R^-1 R_hat R^-1 a is `found`, a' R^-1 a
 // `expected`, R without the signal.
@@ -56,30 +59,11 @@ bool AngleLikelihood::prepare_block(const RealArray& array, const RealCovariance
     steer_real(array, m[n] + moved, A_.col(n).data(), D_.col(n).data());
   }
   kernels::grams({array.padded, N, A_.data(), D_.data(), AA_.data(), DA_.data(), DD_.data()});
-  SignalMatrix L = AA_;  // sigma^2 P^-1 + A'A = L L'
-  for (int n = 0; n < N; ++n) L(n, n) += noise_power * std::exp(-m[N + n]);
-  log_det_ = 0.0;
-  for (int j = 0; j < N; ++j) {
-    for (int k = 0; k < j; ++k)
-      for (int i = j; i < N; ++i) L(i, j) -= L(i, k) * L(j, k);
-    if (!(L(j, j) > 0.0)) return false;
-    const double root = std::sqrt(L(j, j));
-    log_det_ += std::log(L(j, j));
-    L(j, j) = root;
-    for (int i = j + 1; i < N; ++i) L(i, j) /= root;
-  }
-  for (int j = 0; j < N; ++j) {  // C = L^-T L^-1, column by column
-    for (int i = 0; i < N; ++i) C_(i, j) = i == j ? 1.0 : 0.0;
-    for (int i = j; i < N; ++i) {
-      for (int k = j; k < i; ++k) C_(i, j) -= L(i, k) * C_(k, j);
-      C_(i, j) /= L(i, i);
-    }
-    for (int i = N - 1; i >= 0; --i) {
-      for (int k = i + 1; k < N; ++k) C_(i, j) -= L(k, i) * C_(k, j);
-      C_(i, j) /= L(i, i);
-    }
-  }
-  return true;
+  SignalMatrix L(N, N);
+  SignalVector p = m.tail(N).array().exp();
+  bool is_positive_definite = false;
+  kernels::coupling({N, noise_power, AA_.data(), p.data(), L.data(), C_.data(), &log_det_, &is_positive_definite});
+  return is_positive_definite;
 }
 
 bool AngleLikelihood::evaluate(const RealInterval& interval, const SignalVector& m, const SignalVector* rate,
@@ -92,7 +76,7 @@ bool AngleLikelihood::evaluate(const RealInterval& interval, const SignalVector&
   SignalVector expected = SignalVector::Zero(N), found = SignalVector::Zero(N);
   double residual = 0.0;
   SignalMatrix K(N, N), E(N, N), aRa(N, N), dRa(N, N), dRd(N, N);
-  SignalVector p(N);
+  SignalVector p(N), W_RW(N), V_RW(N), A_RW(N);
   for (int n = 0; n < N; ++n) p[n] = std::exp(m[N + n]);
   const double inverse_noise = 1.0 / noise_power;
 
@@ -103,12 +87,12 @@ bool AngleLikelihood::evaluate(const RealInterval& interval, const SignalVector&
     kernels::inner({N, inverse_noise, AA_.data(), DA_.data(), DD_.data(), C_.data(), p.data(), K.data(), E.data(),
                     aRa.data(), dRa.data(), dRd.data()});
     kernels::products({rows, N, A_.data(), D_.data(), block.R.data(), K.data(), E.data(), inverse_noise, W_.data(),
-                       V_.data(), RW_.data()});
+                       V_.data(), RW_.data(), W_RW.data(), V_RW.data(), A_RW.data()});
 
     double explained = 0.0, log_p = 0.0;
     for (int i = 0; i < N; ++i) {
-      const double found_a = W_.col(i).dot(RW_.col(i)), found_d = V_.col(i).dot(RW_.col(i));
-      explained += p[i] * A_.col(i).dot(RW_.col(i));
+      const double found_a = W_RW[i], found_d = V_RW[i];  // a' R^-1 R_hat R^-1 a and d' R^-1 R_hat R^-1 a
+      explained += p[i] * A_RW[i];
       log_p += m[N + i];
       gradient_[i] += 2.0 * Ns * p[i] * (found_d - dRa(i, i));
       gradient_[N + i] += Ns * p[i] * (found_a - aRa(i, i));

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "truebearing/array/angle_likelihood_kernels.hpp"
 
+#include <cmath>
 #include <cstddef>
 
+#include "truebearing/array/column_product.hpp"
 #include "truebearing/core/simd_lanes.hpp"
 #include "truebearing/core/simd_dispatch.hpp"
+#include "truebearing/core/simd_width.hpp"
 #include "truebearing/core/with_count.hpp"
 
 namespace truebearing::kernels {
@@ -74,6 +77,24 @@ template <std::size_t kColumns>
 #pragma GCC unroll 8
     for (std::size_t c = 0; c < kColumns; ++c) store(rw[c], p.RW + (first + int(c)) * rows + m);
   }
+#pragma GCC unroll 8
+  for (std::size_t c = 0; c < kColumns; ++c) {
+    const int n = first + int(c);
+    Lanes of_w{}, of_v{}, of_a{};
+    for (int m = n * rows; m < (n + 1) * rows; m += kLanes) {
+      Lanes rw, w, v, a;
+      load(p.RW + m, rw);
+      load(p.W + m, w);
+      load(p.V + m, v);
+      load(p.A + m, a);
+      of_w += w * rw;
+      of_v += v * rw;
+      of_a += a * rw;
+    }
+    p.W_RW[n] = sum(of_w);
+    p.V_RW[n] = sum(of_v);
+    p.A_RW[n] = sum(of_a);
+  }
 }
 [[gnu::always_inline]] inline void products_loops(const Products& p) {
   with_count(
@@ -85,41 +106,93 @@ template <std::size_t kColumns>
       });
 }
 
-[[gnu::always_inline]] inline void inner_of(int N, const Inner& s) {
+[[gnu::always_inline]] inline void coupling_of(int N, const Coupling& s) {
+  double* __restrict L = s.L;  // sigma^2 P^-1 + A'A = L L', with the inverse of its diagonal in place of that
+  double* __restrict C = s.C;
+  *s.is_positive_definite = false;
+  for (int k = 0; k < N * N; ++k) L[k] = s.AA[k];
+  double det = 1.0;
+  for (int j = 0; j < N; ++j) L[j * N + j] += s.noise / s.p[j];
   for (int j = 0; j < N; ++j) {
-    double *K = s.K + j * N, *E = s.E + j * N, *aRa = s.aRa + j * N, *dRa = s.dRa + j * N, *dRd = s.dRd + j * N;
-    const double inverse_p = 1.0 / s.p[j];
-    for (int i = 0; i < N; ++i) {
-      K[i] = s.C[j * N + i] * inverse_p;
-      E[i] = aRa[i] = dRa[i] = 0.0;
-      dRd[i] = s.DD[j * N + i];
+    double* L_j = L + j * N;
+    if (!(L_j[j] > 0.0)) return;
+    det *= L_j[j];
+    const double inverse = 1.0 / std::sqrt(L_j[j]);
+    for (int i = j; i < N; ++i) L_j[i] *= inverse;
+    L_j[j] = inverse;
+    for (int k = j + 1; k < N; ++k) {
+      const double factor = L_j[k];
+      for (int i = k; i < N; ++i) L[k * N + i] -= L_j[i] * factor;
     }
-    for (int k = 0; k < N; ++k) {
-      const double da = s.DA[k * N + j];
+  }
+  *s.is_positive_definite = true;
+  *s.log_det = std::log(det);
+  // C is X' first, X = L^-1, so that inner loops run down columns.
+  for (int j = 0; j < N; ++j)
+    for (int i = 0; i < N; ++i) C[j * N + i] = i == j ? 1.0 : 0.0;
+  for (int i = 0; i < N; ++i) {
+    double* C_i = C + i * N;
+    for (int k = 0; k < i; ++k) {
+      const double factor = L[k * N + i];
 #pragma omp simd
-      for (int i = 0; i < N; ++i) E[i] += s.C[k * N + i] * da;
+      for (int j = 0; j < N; ++j) C_i[j] -= factor * C[k * N + j];
     }
-    for (int k = 0; k < N; ++k) {
-      const double K_k = K[k], E_k = E[k];
+    const double inverse = L[i * N + i];
 #pragma omp simd
-      for (int i = 0; i < N; ++i) {
-        aRa[i] += s.AA[k * N + i] * K_k;
-        dRa[i] += s.DA[k * N + i] * K_k;
-        dRd[i] -= s.DA[k * N + i] * E_k;
+    for (int j = 0; j < N; ++j) C_i[j] *= inverse;
+  }
+  for (int j = 0; j < N; ++j) {  // C = X' X, in the place of L
+    double* __restrict out = L + j * N;
+    for (int i = 0; i < N; ++i) out[i] = 0.0;
+    for (int k = j; k < N; ++k) {
+      const double factor = C[k * N + j];
+#pragma omp simd
+      for (int i = 0; i < N; ++i) out[i] += C[k * N + i] * factor;
+    }
+  }
+  for (int k = 0; k < N * N; ++k) C[k] = L[k];
+}
+template <int kWidth>
+[[gnu::always_inline]] inline void coupling_loops(const Coupling& s) {
+  with_count(
+      s.N, [&](auto known) __attribute__((always_inline)) { coupling_of(known > 0 ? int(known) : s.N, s); });
+}
+
+template <int kWidth>
+[[gnu::always_inline]] inline void inner_of(int N, const Inner& s) {
+  using Vector = VectorOf<kWidth>;
+  for (int j = 0; j < N; ++j) {
+    const double *C_j = s.C + j * N, inverse_p = 1.0 / s.p[j];
+    double *K = s.K + j * N, *E = s.E + j * N;
+    for (int i = 0; i < N; ++i) K[i] = C_j[i] * inverse_p;
+    double da[kMostSignals];  // row j of D'A
+    for (int k = 0; k < N; ++k) da[k] = s.DA[k * N + j];
+    multiply<kWidth>(N, 0, N, s.C, N, da, E);
+    multiply<kWidth>(N, 0, N, s.AA, N, K, s.aRa + j * N);
+    for (int i = 0; i < N; i += kWidth) {
+      typename Vector::Doubles dRa{}, dRd, a;
+      Vector::load(s.DD + j * N + i, dRd);
+      for (int k = 0; k < N; ++k) {
+        Vector::load(s.DA + k * N + i, a);
+        dRa += a * K[k];
+        dRd -= a * E[k];
       }
+      Vector::store(dRa, s.dRa + j * N + i);
+      Vector::store(dRd * s.inverse_noise, s.dRd + j * N + i);
     }
-    for (int i = 0; i < N; ++i) dRd[i] *= s.inverse_noise;
   }
 }
+template <int kWidth>
 [[gnu::always_inline]] inline void inner_loops(const Inner& s) {
   with_count(
-      s.N, [&](auto known) __attribute__((always_inline)) { inner_of(known > 0 ? int(known) : s.N, s); });
+      s.N, [&](auto known) __attribute__((always_inline)) { inner_of<kWidth>(known > 0 ? int(known) : s.N, s); });
 }
 
 }  // namespace
 
 TRUEBEARING_FOR_AVX2(grams, (const Grams& g), (g))
 TRUEBEARING_FOR_AVX2(products, (const Products& p), (p))
-TRUEBEARING_FOR_AVX2(inner, (const Inner& s), (s))
+TRUEBEARING_FOR_WIDEST(coupling, (const Coupling& s), (s))
+TRUEBEARING_FOR_WIDEST(inner, (const Inner& s), (s))
 
 }  // namespace truebearing::kernels

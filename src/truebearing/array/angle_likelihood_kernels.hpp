@@ -13,12 +13,25 @@ struct Grams {
 };
 void grams(const Grams& g);
 
-/// W = A K,  V = (D - A E) / sigma^2,  RW = R_hat W.
+/// C = (sigma^2 P^-1 + A'A)^-1 (N x N) and log det of its inverse. False where that is not positive definite.
+struct Coupling {
+  int N;
+  double noise;
+  const double *AA, *p;
+  double *L, *C;  ///< N x N each, the first for what is between
+  double* log_det;
+  bool* is_positive_definite;
+};
+void coupling(const Coupling& s);
+
+/// W = A K,  V = (D - A E) / sigma^2,  RW = R_hat W, and the inner products of the columns of W, V and A with those of
+/// RW (N each).
 struct Products {
   int rows, N;
   const double *A, *D, *R, *K, *E;
   double inverse_noise;
   double *W, *V, *RW;
+  double *W_RW, *V_RW, *A_RW;
 };
 void products(const Products& p);
 

@@ -10,6 +10,7 @@
 #include "app/compare_study.hpp"
 #include "app/data_folder.hpp"
 #include "app/output.hpp"
+#include "app/ranks_of_mpirun.hpp"
 #include "app/shard.hpp"
 #include "app/subcommands.hpp"
 #include "app/workflow.hpp"
@@ -54,16 +55,21 @@ void compare_shard(const Study& study, const CompareArguments& arguments, const 
   write_shard(comparison, header, options.json, options.quiet);
 }
 
-void run_compare(const CompareArguments& arguments) {
+void run_compare(const CompareArguments& arguments, Ranks* ranks) {
   check_shard(arguments);
-  if (!arguments.shard.empty()) Shard::parse(arguments.shard);
+  if (!arguments.shard.empty()) {
+    Shard::parse(arguments.shard);
+    if (ranks) throw InputError("--shard", "is of one process", "mpirun without it");
+  }
   Study study = Study::load(arguments.study);
   if (arguments.all) study.show_all();
   CompareStudyOptions options = arguments.options;
   options.seed = arguments.seed.value_or(study.seed());
   std::vector<std::filesystem::path> inputs = study.input_files();
   if (!options.truth.empty()) inputs.emplace_back(options.truth);
-  check_outputs({options.json, options.report.page}, inputs);
+  if (is_first(ranks)) check_outputs({options.json, options.report.page}, inputs);
+  if (ranks) check_all_have(*ranks, hash_of_inputs(study), "text of the study, or of a model or scenario of it,");
+  if (!is_first(ranks)) options.quiet = true;
   if (!arguments.shard.empty()) return compare_shard(study, arguments, options);
   CorrectionModels models;
   if (arguments.retrain) {
@@ -71,7 +77,7 @@ void run_compare(const CompareArguments& arguments) {
     study.set_parameters(tune_study(study, workflow));
     models = train_study(study, {}, workflow);
   }
-  compare_study(study, models, options);
+  compare_study(study, models, options, ranks);
 }
 
 }  // namespace
@@ -97,7 +103,7 @@ void add_compare(const Subcommands& all) {
   add_table_arguments(command, options.tables);
   command.flag("--all", arguments->all, "with trackers that the study does not show");
   command.flag("--quiet", options.quiet, "no progress");
-  command.runs([arguments] { run_compare(*arguments); });
+  command.runs([arguments] { with_ranks([&](Ranks* ranks) { run_compare(*arguments, ranks); }); });
 }
 
 }  // namespace truebearing

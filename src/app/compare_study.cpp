@@ -80,15 +80,19 @@ void StudyComparison::write(Comparison comparison) const {
   if (asked_.report.wanted()) write_report(asked_.report, {results});
 }
 
-void compare_study(const Study& study, const CorrectionModels& models, const CompareStudyOptions& options) {
+void compare_study(const Study& study, const CorrectionModels& models, const CompareStudyOptions& options,
+                   Ranks* ranks) {
   StudyComparison comparison(study, models, options);
   ComparisonFigures figures(comparison.runs());
+  const auto add = [&](std::size_t block, std::string_view bytes) { figures.add(block, bytes); };
   {
     ProgressLine progress("compare", options.quiet);
-    run_blocks(comparison.runs(), 0, comparison.runs().blocks(), progress.callback(),
-               [&](std::size_t block, std::string_view bytes) { figures.add(block, bytes); });
+    if (ranks)
+      run_blocks(comparison.runs(), *ranks, progress.callback(), add);
+    else
+      run_blocks(comparison.runs(), BlockRange{0, comparison.runs().blocks()}, progress.callback(), add);
   }
-  comparison.write(figures.comparison());
+  if (!ranks || ranks->rank() == 0) comparison.write(figures.comparison());
 }
 
 }  // namespace truebearing

@@ -12,7 +12,7 @@
 #include "app/log_options.hpp"
 #include "app/report_output.hpp"
 #include "app/terminal.hpp"
-#include "truebearing/evaluation/comparison_runs.hpp"
+#include "truebearing/evaluation/ranks.hpp"
 #include "truebearing/study/study.hpp"
 
 namespace truebearing {
@@ -54,7 +54,8 @@ class StudyComparison {
   std::unique_ptr<ComparisonRuns> runs_;
 };
 
-/// All of its runs in this process, and what came of them written. Throws InputError.
-void compare_study(const Study& study, const CorrectionModels& models, const CompareStudyOptions& options);
+/// All of its runs in this process, or shared with others, and what came of them written by the first. Throws InputError.
+void compare_study(const Study& study, const CorrectionModels& models, const CompareStudyOptions& options,
+                   Ranks* ranks = nullptr);
 
 }  // namespace truebearing

@@ -128,8 +128,8 @@ void write_shard(StudyComparison& comparison, const ShardHeader& header, const s
   file.write(header_json(header).dump() + "\n");
   {
     ProgressLine progress(fmt::format("shard {}/{}", header.shard.index, header.shard.count), quiet);
-    run_blocks(comparison.runs(), header.shard.first(blocks), header.shard.last(blocks), progress.callback(),
-               [&](std::size_t block, std::string_view bytes) {
+    run_blocks(comparison.runs(), BlockRange{header.shard.first(blocks), header.shard.last(blocks)},
+               progress.callback(), [&](std::size_t block, std::string_view bytes) {
                  file.write(fmt::format("[{},\"{}\"]\n", block, base64_of(bytes)));
                });
   }

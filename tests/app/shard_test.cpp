@@ -109,6 +109,19 @@ TEST(Shards, OfWhatDoesNotBelongTogetherAreRefused) {
   refused("part1.json part2.json part3.json", "which is not there");
 }
 
+// As mpirun starts it, where the program has not been built with MPI.
+TEST(Ranks, NeedAProgramThatWasBuiltWithMpi) {
+  if (std::filesystem::exists(std::filesystem::path(TRUEBEARING_PROGRAM).parent_path() / "truebearing_mpi.so"))
+    GTEST_SKIP() << "tests/mpi runs it";
+  const TemporaryFolder folder;
+  write_study(folder, tuned_study());
+  const Outcome outcome = run(folder, "compare small.toml --json one.json", "export OMPI_COMM_WORLD_SIZE=2;");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_TRUE(is_one_line(outcome.err)) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("this build of truebearing knows nothing of MPI"));
+  EXPECT_EQ(run(folder, "compare small.toml --runs 2", "export OMPI_COMM_WORLD_SIZE=1;").status, 0);
+}
+
 TEST(Shards, OptionsThatMakeNoShardAreRefused) {
   const TemporaryFolder folder;
   write_study(folder, tuned_study());

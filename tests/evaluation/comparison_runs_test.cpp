@@ -43,8 +43,9 @@ std::vector<std::string> tallies(ComparisonRuns& runs) {
   std::vector<std::string> all(runs.blocks());
   const std::size_t half = runs.blocks() / 2;
   const auto keep = [&](std::size_t block, std::string_view bytes) { all[block] = bytes; };
-  run_blocks(runs, half, runs.blocks(), {}, keep);
-  run_blocks(runs, 0, half, {}, keep);
+  run_blocks(runs, BlockRange{half, runs.blocks()}, {}, keep);
+  run_blocks(runs, BlockRange{0, half, 2}, {}, keep);
+  run_blocks(runs, BlockRange{1, half, 2}, {}, keep);
   return all;
 }
 

@@ -19,7 +19,7 @@ Comparison compare(const TrackerSet& trackers, const std::vector<NamedScenario>&
                    const ComparisonOptions& options) {
   ComparisonRuns runs(trackers, scenarios, options);
   ComparisonFigures figures(runs);
-  run_blocks(runs, 0, runs.blocks(), options.progress,
+  run_blocks(runs, BlockRange{0, runs.blocks()}, options.progress,
              [&](std::size_t block, std::string_view bytes) { figures.add(block, bytes); });
   return figures.comparison();
 }

@@ -82,19 +82,20 @@ RunOutcome ComparisonRuns::outcome(std::size_t set, std::size_t run, TrackerSet&
   return outcome;
 }
 
-void run_blocks(ComparisonRuns& runs, std::size_t first, std::size_t last, const Progress& progress,
+void run_blocks(ComparisonRuns& runs, const BlockRange& blocks, const Progress& progress,
                 const std::function<void(std::size_t block, std::string_view bytes)>& take) {
-  std::size_t total = 0, done = 0, next = first;
-  for (std::size_t block = first; block < last; ++block) total += runs.runs_in(block);
+  std::size_t total = 0, done = 0, next = 0;
+  for (std::size_t i = 0; i < blocks.size(); ++i) total += runs.runs_in(blocks.first + i * blocks.stride);
   std::map<std::size_t, std::string> waiting;  // for one before them
   std::mutex mutex;
-  monte_carlo(last - first, runs.options().threads, [&](std::size_t i, std::size_t worker) {
-    std::string bytes = runs.run(first + i, worker);
+  monte_carlo(blocks.size(), runs.options().threads, [&](std::size_t i, std::size_t worker) {
+    const std::size_t block = blocks.first + i * blocks.stride;
+    std::string bytes = runs.run(block, worker);
     const std::lock_guard lock(mutex);
-    waiting.emplace(first + i, std::move(bytes));
+    waiting.emplace(i, std::move(bytes));
     for (auto it = waiting.begin(); it != waiting.end() && it->first == next; it = waiting.erase(it), ++next)
-      take(it->first, it->second);
-    done += runs.runs_in(first + i);
+      take(blocks.first + it->first * blocks.stride, it->second);
+    done += runs.runs_in(block);
     if (progress) progress(done, total);
   });
 }

@@ -49,9 +49,17 @@ class ComparisonRuns {
   std::vector<std::optional<TrackerSet>> copies_;  // [worker]
 };
 
-/// Runs the blocks from first to before last on the threads of the options, and gives the tally of each to `take` in
+/// Blocks first, first + stride and so on, before last.
+struct BlockRange {
+  std::size_t first, last;
+  std::size_t stride = 1;
+
+  std::size_t size() const { return first < last ? (last - first + stride - 1) / stride : 0; }
+};
+
+/// Runs those blocks on the threads of the options, and gives the tally of each to `take` in
 /// their order, from one thread at a time. progress: of the runs of these blocks.
-void run_blocks(ComparisonRuns& runs, std::size_t first, std::size_t last, const Progress& progress,
+void run_blocks(ComparisonRuns& runs, const BlockRange& blocks, const Progress& progress,
                 const std::function<void(std::size_t block, std::string_view bytes)>& take);
 
 /// The figures of all blocks, which are added in their order.

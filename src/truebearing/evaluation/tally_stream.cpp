@@ -87,18 +87,21 @@ void TallyStream::all(bool& all) {
   if (!writes_) all = all && other;
 }
 
-void TallyStream::names(std::vector<std::string>& names) {
-  std::vector<std::string> read(length(names.size()));
-  for (std::size_t i = 0; i < read.size(); ++i) {
-    const std::size_t size = length(writes_ ? names[i].size() : 0);
-    if (writes_) {
-      bytes_ += names[i];
-    } else {
-      read[i] = left_.substr(0, size);
-      left_.remove_prefix(size);
-    }
+void TallyStream::text(std::string& text) {
+  const std::size_t size = length(text.size());
+  if (writes_) {
+    bytes_ += text;
+  } else {
+    text = left_.substr(0, size);
+    left_.remove_prefix(size);
   }
-  if (!writes_ && names.empty()) names = std::move(read);
+}
+
+void TallyStream::names(std::vector<std::string>& names) {
+  std::vector<std::string> read = writes_ ? names : std::vector<std::string>();
+  read.resize(length(names.size()));
+  for (std::string& name : read) text(name);
+  if (names.empty()) names = std::move(read);
 }
 
 }  // namespace truebearing

@@ -34,6 +34,8 @@ class TallyStream {
   void greatest(int& greatest);
   void any(bool& any);
   void all(bool& all);
+  /// Writes it, or replaces it.
+  void text(std::string& text);
   /// Of the first that has any.
   void names(std::vector<std::string>& names);
 

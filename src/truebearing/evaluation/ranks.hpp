@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ranks: processes, on one machine or several, that do the same work together and share its runs. What holds them
+// together is a module of its own (mpi/), so that whoever has one machine needs nothing of it.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "truebearing/evaluation/comparison_runs.hpp"
+
+namespace truebearing {
+
+class Ranks {
+ public:
+  virtual ~Ranks() = default;
+  /// Of this process, from 0; of all.
+  virtual std::size_t rank() const = 0;
+  virtual std::size_t size() const = 0;
+  /// To rank 0, from one thread at a time. Waits until it is on its way.
+  virtual void send(std::size_t number, std::string_view bytes) = 0;
+  /// At rank 0: number and bytes of what has come from any rank, or nothing.
+  virtual std::optional<std::pair<std::size_t, std::string>> receive() = 0;
+  /// To be called by all: what each of them gave, by rank.
+  virtual std::vector<std::string> gather_all(std::string_view bytes) = 0;
+  /// To be called by all, at the end.
+  virtual void leave() = 0;
+  /// Ends all of them.
+  [[noreturn]] virtual void abort() = 0;
+};
+
+/// Throws InputError at every rank where not all gave the same text; `what` they should have in common stands in the
+/// message.
+void check_all_have(Ranks& ranks, const std::string& text, const std::string& what);
+
+/// Runs the blocks of a comparison, each at one of the ranks, and gives them to `take` at rank 0 in their order.
+/// progress: of the runs that rank 0 has from all.
+void run_blocks(ComparisonRuns& runs, Ranks& ranks, const Progress& progress,
+                const std::function<void(std::size_t block, std::string_view bytes)>& take);
+
+}  // namespace truebearing

@@ -1,0 +1,83 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# two_hosts.sh PROGRAM STUDY [RUNS]: mpirun on two hosts, which are two network namespaces with a name, an address and a
+# wire of their own: the same bytes as one process, and a clear end within 10 s where a rank is killed or the wire is cut.
+# Prints the times of one process and of one rank on each host. Status 77 where this machine permits no namespaces or has
+# no mpirun.
+set -uo pipefail
+program=$(realpath "$1") study=$(realpath "$2") runs=${3-400}
+skip() { echo "two_hosts: left out: $1"; exit 77; }
+fail() { echo "two_hosts: $1" >&2; exit 1; }
+command -v mpirun >/dev/null || skip "no mpirun"
+command -v ip >/dev/null || skip "no ip"
+a=tb-a-$$ b=tb-b-$$ scratch=$(mktemp -d)
+end() {
+  ip netns delete "$a" 2>/dev/null
+  ip netns delete "$b" 2>/dev/null
+  rm -rf "$scratch"
+}
+trap end EXIT
+ip netns add "$a" 2>/dev/null && ip netns add "$b" 2>/dev/null && unshare --uts true 2>/dev/null || skip "no namespaces"
+ip -n "$a" link add wire type veth peer name wire netns "$b" 2>/dev/null || skip "no wire between namespaces"
+for side in "$a 1" "$b 2"; do
+  read -r name number <<<"$side"
+  ip -n "$name" address add "10.77.0.$number/24" dev wire
+  ip -n "$name" link set wire up
+  ip -n "$name" link set lo up
+done
+
+# on NAMESPACE COMMAND...: there, under a host name of its own.
+on() { ip netns exec "$1" unshare --uts bash -c 'hostname "$0" && exec "$@"' "$@"; }
+# What mpirun starts its other host with: no ssh, but the other namespace.
+cat >"$scratch/agent" <<END
+#!/bin/bash
+exec ip netns exec $b unshare --uts bash -c 'hostname $b && eval "\$0"' "\${*:2}"
+END
+chmod +x "$scratch/agent"
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 TMPDIR=$scratch
+two_hosts() {
+  on "$a" mpirun --mca plm_rsh_agent "$scratch/agent" --mca btl tcp,self --mca btl_tcp_if_include 10.77.0.0/24 \
+    --mca oob_tcp_if_include 10.77.0.0/24 --mca orte_keep_fqdn_hostnames 1 --bind-to none -n 2 --host 10.77.0.1:1,10.77.0.2:1 "$@"
+}
+now_ms() { echo $((${EPOCHREALTIME/[.,]/} / 1000)); }
+# timed COMMAND...: its time in ms as $took_ms.
+timed() {
+  local begin
+  begin=$(now_ms)
+  "$@" >"$scratch/said" 2>&1 || { cat "$scratch/said" >&2; fail "status not 0: $*"; }
+  took_ms=$(($(now_ms) - begin))
+}
+
+two_hosts hostname | sort | tr '\n' ' ' | grep -q "$a $b" || fail "the ranks are not on two hosts"
+compare=("$program" compare "$study" --threads 1 --quiet)
+timed "${compare[@]}" --runs "$runs" --json "$scratch/one.json"; one=$took_ms
+timed two_hosts "${compare[@]}" --runs "$runs" --json "$scratch/two.json"; two=$took_ms
+for file in one two; do grep -v '"ns_per_step"' "$scratch/$file.json" >"$scratch/$file.figures"; done
+cmp "$scratch/one.figures" "$scratch/two.figures" || fail "other bytes on two hosts"
+echo "two_hosts: $runs runs: one process $one ms, one rank on each of two hosts $two ms, same bytes"
+
+# ends_well WHAT: a long comparison on both hosts ends within 10 s of WHAT, in a line of ours, and leaves no results.
+ends_well() {
+  rm -f "$scratch/long.json"
+  two_hosts "${compare[@]}" --runs 100000000 --json "$scratch/long.json" >"$scratch/said" 2>&1 &
+  local job=$!
+  sleep 2
+  local begin
+  begin=$(now_ms)
+  "$@"
+  wait "$job" && fail "status 0 after $*"
+  local took=$(($(now_ms) - begin))
+  ((took < 10000)) || fail "$took ms from $* to the end"
+  grep -q '^truebearing: mpirun: has ended all ranks' "$scratch/said" || { cat "$scratch/said" >&2; fail "no line after $*"; }
+  [[ ! -e $scratch/long.json ]] || fail "results after $*"
+  echo "two_hosts: $1: ended after $took ms"
+}
+kill_rank_on_b() {
+  local pid
+  for pid in $(ip netns pids "$b"); do
+    if [[ $(readlink "/proc/$pid/exe") == "$program" ]]; then kill -KILL "$pid"; fi
+  done
+}
+cut_wire() { ip -n "$b" link set wire down; for pid in $(ip netns pids "$b"); do kill -KILL "$pid"; done; }
+ends_well kill_rank_on_b
+ends_well cut_wire

@@ -21,12 +21,16 @@ void eigen(benchmark::State& state) {
   using Measured = Eigen::Matrix<double, Dim, 1>;
   using Innovations = Eigen::Matrix<double, Dim, Dim>;
   const auto east_m = measurements(15.0), north_m = measurements(-7.0);
-  const Innovations I = Innovations::Identity();
   Covariance F = Covariance::Identity(), Q;
-  F.template topRightCorner<Dim, Dim>() = kPeriod_s * I;
-  Q << kDensity_m2ps3 / 3 * I, kDensity_m2ps3 / 2 * I, kDensity_m2ps3 / 2 * I, kDensity_m2ps3 * I;
+  F.template topRightCorner<Dim, Dim>().diagonal().setConstant(kPeriod_s);
+  Q.setZero();
+  for (int i = 0; i < Dim; ++i) {
+    Q(i, i) = kDensity_m2ps3 / 3;
+    Q(i, Dim + i) = Q(Dim + i, i) = kDensity_m2ps3 / 2;
+    Q(Dim + i, Dim + i) = kDensity_m2ps3;
+  }
   Eigen::Matrix<double, Dim, kStates> H = Eigen::Matrix<double, Dim, kStates>::Identity();
-  Innovations R = kSigma_m * kSigma_m * I;
+  Innovations R = kSigma_m * kSigma_m * Innovations::Identity();
   for (auto _ : state) {
     hide(F);
     hide(Q);

@@ -207,6 +207,8 @@ def machine(folder):
 def shape(text):
     """Headings, the rows' names and what they are held to: what no run changes."""
     lines = [line.strip("|").split("|") for line in text.strip().splitlines()]
+    if not lines:
+        return None
     return lines[0], [(line[0], line[2::2] if len(line) == 6 else "") for line in lines[1:]]
 
 

@@ -18,7 +18,7 @@ namespace {
 
 // The longest states and measurements that the kernels are compiled for.
 constexpr int most_measurements(int states) {
-  return states == 2 ? 1 : states == 4 ? 3 : 4;
+  return states == 2 ? 2 : states == 4 ? 3 : 4;
 }
 
 template <int N>

@@ -273,6 +273,7 @@ void mix_to_one(const ModeBlock<N>* modes, const LaneWeights* weights, int block
   template void mix_to_one<N>(const ModeBlock<N>*, const LaneWeights*, int, double*, double*);  \
   TRUEBEARING_PACKED_UPDATE(N, 1)
 TRUEBEARING_PACKED_MODES(2);
+TRUEBEARING_PACKED_UPDATE(2, 2);
 TRUEBEARING_PACKED_MODES(4);
 TRUEBEARING_PACKED_UPDATE(4, 2);
 TRUEBEARING_PACKED_UPDATE(4, 3);

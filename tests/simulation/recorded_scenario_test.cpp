@@ -172,7 +172,8 @@ TEST(RecordedScenario, SnapshotsAreReplayedWithTheTruthOfAllTargets) {
 
 TEST(RecordedScenario, PositionsMustBeThoseOfThePlane) {
   EXPECT_THAT(error_message([] { RecordedScenario({}, RecordedSensor{}); }), HasSubstr("no track"));
-  EXPECT_THAT(error_message([] { RecordedScenario({read(kLog)}, RecordedSensor{}); }), HasSubstr("east_m, north_m with their truth"));
+  EXPECT_THAT(error_message([] { RecordedScenario({read(kLog)}, RecordedSensor{}); }),
+              HasSubstr("east_m, north_m with their truth"));
 }
 
 }  // namespace

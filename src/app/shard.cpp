@@ -22,6 +22,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMostShards = 1000000;
+constexpr std::size_t kMostRuns = 1000000000;  // as --runs has it
 constexpr std::size_t kMostInput = std::size_t{1} << 30;
 
 std::optional<std::size_t> number_of(const std::string& text) {
@@ -61,6 +62,9 @@ ShardHeader read_header(const std::string& file) {
   try {
     const Json json = Json::parse(line);
     ShardHeader header;
+    for (const Json* number :
+         {&json.at("truebearing_shard").at(0), &json.at("truebearing_shard").at(1), &json.at("seed"), &json.at("runs")})
+      if (!number->is_number_unsigned()) throw no_shard(file);
     header.shard = {json.at("truebearing_shard").at(0).get<std::size_t>(),
                     json.at("truebearing_shard").at(1).get<std::size_t>()};
     if (const auto version = json.at("version").get<std::string>(); version != TRUEBEARING_VERSION)
@@ -71,8 +75,8 @@ ShardHeader read_header(const std::string& file) {
     header.runs = json.at("runs").get<std::size_t>();
     header.all = json.at("all").get<bool>();
     header.details = json.at("details").get<bool>();
-    if (header.shard.index < 1 || header.shard.index > header.shard.count || header.shard.count > kMostShards ||
-        header.runs < 1)
+    if (header.runs > kMostRuns || header.shard.index < 1 || header.shard.index > header.shard.count ||
+        header.shard.count > kMostShards || header.runs < 1)
       throw no_shard(file);
     return header;
   } catch (const nlohmann::json::exception&) {

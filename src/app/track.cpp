@@ -150,9 +150,10 @@ std::vector<ForetoldLog> who_foretells(const Study& study, const TrackArguments&
                                        const KeptLogs& logs) {
   if (options.foretold == 0) return {};
   std::vector<ForetoldLog> all =
-      foretell(run.trackers(), logs, run.contents().epoch_s, options.foretold, sensor_sites(study));
+      foretell(run.trackers(), options.log, logs, run.contents().epoch_s, options.foretold, sensor_sites(study));
   for (const ForetoldLog& log : all) {
-    const std::string text = foretelling_text(log.told);
+    const std::string of_track = logs.size() > 1 ? fmt::format("track {}\n", log.number) : "";
+    const std::string text = of_track + foretelling_text(log.told);
     if (options.only_text_for_programs())
       say(text);
     else

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/track_foretelling.hpp"
 
+#include <fmt/format.h>
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "app/output.hpp"
+#include "truebearing/core/error.hpp"
 #include "truebearing/evaluation/six_digits.hpp"
 #include "truebearing/io/json_file.hpp"
 
@@ -33,13 +36,18 @@ Json foretelling_json(const ForetoldLog& log) {
 
 }  // namespace
 
-std::vector<ForetoldLog> foretell(const TrackerSet& trackers, const KeptLogs& logs, double epoch_s, int steps,
-                                  const SensorSites& sites) {
+std::vector<ForetoldLog> foretell(const TrackerSet& trackers, const std::string& log, const KeptLogs& logs,
+                                  double epoch_s, int steps, const SensorSites& sites) {
   std::vector<ForetoldLog> all;
   for (const auto& [number, recording] : logs) {
     Recording timed = recording;
     for (Measurement& measurement : timed.measurements) measurement.time_s -= epoch_s;
-    all.push_back({number, foretell(trackers, timed, steps, sites)});
+    try {
+      all.push_back({number, foretell(trackers, timed, steps, sites)});
+    } catch (const InputError& error) {  // the others, and what else is told of this one, stand
+      say(fmt::format("truebearing: {}{}: --foretell: {}", log, logs.size() > 1 ? fmt::format(" track {}", number) : "",
+                      error.what()));
+    }
   }
   return all;
 }

@@ -15,9 +15,9 @@ struct ForetoldLog {
   Foretelling told;
 };
 
-/// Of each log, in the trackers' time, which begins at epoch_s of the log's. Throws InputError as foretell() does.
-std::vector<ForetoldLog> foretell(const TrackerSet& trackers, const KeptLogs& logs, double epoch_s, int steps,
-                                  const SensorSites& sites);
+/// Of each log, in the trackers' time, which begins at epoch_s of the log's. Says of `log` where nothing could be foretold.
+std::vector<ForetoldLog> foretell(const TrackerSet& trackers, const std::string& log, const KeptLogs& logs,
+                                  double epoch_s, int steps, const SensorSites& sites);
 
 /// The results, which are JSON, with a key `foretelling`; as they are where nothing was foretold.
 std::string with_foretelling(std::string results, const std::vector<ForetoldLog>& all);

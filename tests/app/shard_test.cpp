@@ -98,6 +98,8 @@ TEST(Shards, OfWhatDoesNotBelongTogetherAreRefused) {
   refused("part1.json cut.json part3.json", "tally of runs");
   folder.write("cut.json", whole + "\n");
   refused("part1.json cut.json part3.json", "cut.json: goes on behind its last block");
+  folder.write("cut.json", replaced(whole, "\"runs\":", "\"runs\":-"));
+  refused("part1.json cut.json part3.json", "cut.json: is no shard of a comparison");
   folder.write("cut.json", replaced(whole, "\"version\":\"", "\"version\":\"9"));
   refused("part1.json cut.json part3.json", "cut.json: is of version \"9");
 

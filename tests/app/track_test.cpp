@@ -342,6 +342,11 @@ TEST(Track, WhoForetellsBestIsInTheResultsAndOnThePage) {
     EXPECT_THAT(folder.read(std::string(name) + ".html"),
                 AllOf(HasSubstr("Who foretells best"), HasSubstr(told["says"].get<std::string>())));
   }
+  folder.write("short.csv", "time_s,position_m\n0,0\n1,100\n2,200\n3,300\n");
+  const Outcome few = run(folder, "track line.toml short.csv --foretell 2 --json short.json");
+  EXPECT_EQ(few.status, 0);
+  EXPECT_THAT(few.err, AllOf(HasSubstr("short.csv: --foretell: the log: has"), HasSubstr("or more")));
+  EXPECT_THAT(folder.read("short.json"), Not(HasSubstr("foretelling"))) << "and all else stands";
   ASSERT_EQ(run(folder, "track line.toml log.csv --json without.json").status, 0);
   EXPECT_THAT(folder.read("without.json"), Not(HasSubstr("foretelling")));
 }

@@ -165,5 +165,38 @@ TEST(PackedModes, FailWhereSeparateOnesDo) {
   EXPECT_EQ(gained, ModeVector::Constant(6, -kInfinity));
 }
 
+// An exact position that one mode is as sure of, and cannot take; the other can.
+TEST(PackedModes, OneThatFailsStaysWhereItWasPredicted) {
+  const auto two = [] {
+    ModeBank::Modes modes;
+    modes.push_back(state_of<KalmanFilter<4>>(ConstantVelocity<2, Noise>{{0.0}}));
+    modes.push_back(state_of<KalmanFilter<4>>(ConstantVelocity<2, Noise>{{5.0}}));
+    return modes;
+  };
+  const std::unique_ptr<ModeBank> packed = packed_modes(two());
+  SeparateModes separate(two());
+  const CartesianPosition<2> exact{Eigen::Matrix2d::Zero()};
+  const Eigen::Vector2d z = kX0.head<2>() + kX0.tail<2>() + Eigen::Vector2d(1.0, 2.0);
+  const Eigen::Matrix4d none = Eigen::Matrix4d::Zero();
+  const ModeMatrix apart = ModeMatrix::Identity(2, 2);
+  for (ModeBank* bank : {packed.get(), static_cast<ModeBank*>(&separate)}) {
+    bank->begin(kX0.data(), none.data(), 4);
+    ASSERT_TRUE(bank->mix_and_predict(apart, 1.0));
+    ModeVector gained;
+    bank->update(ErasedMeasurement<CartesianPosition<2>>(exact, z, true), gained);
+    EXPECT_EQ(gained[0], -kInfinity);
+    EXPECT_TRUE(std::isfinite(gained[1]));
+    bank->keep();
+    Eigen::Vector4d x;
+    Eigen::Matrix4d P;
+    bank->mix(ModeVector::Unit(2, 1), x.data(), P.data());
+    EXPECT_TRUE(x.allFinite() && P.allFinite());
+  }
+  expect_same(*packed, separate, 2);
+  EXPECT_TRUE(packed->mix_and_predict(mixing_of(2), 1.0));
+  EXPECT_TRUE(separate.mix_and_predict(mixing_of(2), 1.0));
+  expect_same(*packed, separate, 2);
+}
+
 }  // namespace
 }  // namespace truebearing::packed_modes_test

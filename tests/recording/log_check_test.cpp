@@ -62,6 +62,13 @@ TEST(LogCheck, CountsRowsThatHaveNoTime) {
   EXPECT_THAT(report.faults, ::testing::ElementsAre(HasSubstr("has no column \"time_s\"")));
 }
 
+TEST(LogCheck, TimesThatCannotBeReadAreNoFirstOne) {
+  const LogReport some = check("time_s,range_m\nxx,1\n100,2\n101,3\n");
+  EXPECT_EQ(some.first_s, 100.0);
+  EXPECT_EQ(some.last_s, 101.0);
+  EXPECT_TRUE(std::isnan(check("time_s,range_m\nxx,1\nyy,2\n").last_s));
+}
+
 TEST(LogCheck, CountsGapsAndRepeatedRows) {
   const LogReport report = check("time_s,position_m\n0,1\n1,2\n2,3\n2,3\n3,4\n9,5\n");
   EXPECT_TRUE(report.is_usable());

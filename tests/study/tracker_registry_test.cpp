@@ -220,6 +220,19 @@ TEST(KalmanMaker, RefusesGatesAndLimitsOutOfRange) {
     EXPECT_THAT(error_message([&] { make(kLine + bad + "\n", "kalman"); }), HasSubstr("study.toml")) << bad;
 }
 
+// Points of an unscented filter have it already, and of a bank there is no one estimate.
+TEST(KalmanMaker, SecondOrderOfARangeRateIsOfOneLinearisedEstimate) {
+  const std::string radar = R"(
+motion = { model = "constant_velocity", noise = "discrete", sigma_a_mps2 = 1.5 }
+space = "plane"
+measurement = { model = "range_bearing_rate", range_sigma_m = 10.0, bearing_sigma_deg = 0.3, range_rate_sigma_mps = 1.0, second_order = true }
+start = { kind = "one_point", velocity_sigma_mps = 100.0 }
+)";
+  EXPECT_NE(make(radar, "kalman"), nullptr);
+  EXPECT_THAT(error_message([&] { make(radar, "unscented"); }), HasSubstr("second_order"));
+  EXPECT_NE(make(replaced(radar, "second_order = true", "second_order = false"), "unscented"), nullptr);
+}
+
 TEST(KalmanBankMaker, RefusesEmptyAndAbsurdSizes) {
   const std::string bank = R"(
 motion = { model = "constant_velocity", noise = "discrete", sigma_a_mps2 = 1.5 }

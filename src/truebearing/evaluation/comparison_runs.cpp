@@ -31,7 +31,7 @@ ComparisonTally tally_of(const ComparisonRuns& runs, bool details) {
 std::size_t runs_of_block(std::size_t runs) {
   std::size_t size = 1;
   while (size < kMostRunsEvenlyShared && runs > kFewBlocks * size) size *= 2;
-  while (runs > kMostBlocks * size) size *= 2;
+  while (runs > 0 && (runs - 1) / size >= kMostBlocks) size *= 2;
   return size;
 }
 

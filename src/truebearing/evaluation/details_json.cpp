@@ -91,7 +91,8 @@ void add_details(const Comparison& comparison, const std::vector<RunPicture>& pi
     const TrackerSummary& summary = comparison.trackers[i];
     const TrackerDetails& details = comparison.details[i];
     OrderedJson run_rmse = OrderedJson::object(), series_se = OrderedJson::object();
-    for (std::size_t q = 0; q < std::min(summary.quantities.size(), details.run_rmse.size()); ++q) {
+    for (std::size_t q = 0;
+         q < std::min({summary.quantities.size(), details.run_rmse.size(), details.series_se.size()}); ++q) {
       run_rmse[summary.quantities[q].name] = six_digits(details.run_rmse[q]);
       series_se[summary.quantities[q].name] = six_digits(details.series_se[q]);
     }

@@ -62,7 +62,7 @@ std::vector<RunPicture> picture_runs(const TrackerSet& trackers, const std::vect
   if (comparison.details[judge].run_rmse.empty()) return {};
   const std::vector<double>& rmse = comparison.details[judge].run_rmse.front();
   std::vector<std::size_t> order;
-  for (std::size_t run = 0; run < rmse.size(); ++run)
+  for (std::size_t run = 0; run < std::min(rmse.size(), scenarios.size() * options.runs); ++run)
     if (std::isfinite(rmse[run])) order.push_back(run);
   if (order.empty()) return {};
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rmse[a] < rmse[b]; });

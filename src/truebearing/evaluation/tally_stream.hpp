@@ -52,8 +52,10 @@ class TallyStream {
   template <typename Item, typename Each>
   void list(std::vector<Item>& items, const Each& each) {
     const std::size_t count = length(items.size());
-    if (items.size() < count) items.resize(count);
-    for (std::size_t i = 0; i < count; ++i) each(items[i]);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (i == items.size()) items.emplace_back();  // one by one: a stream that ends early takes no memory
+      each(items[i]);
+    }
   }
 
  private:

@@ -37,6 +37,7 @@ class PackedModes final : public ModeBank {
         updates_(modes_.size()),
         verdicts_(modes_.size()),
         weights_(modes_.size() * motions_.size()) {
+    nonlinear_.reserve(modes_.size() * kLanes);
     for (const auto& motion : motions_) shells_.push_back(std::make_unique<Shell>(motion));
     const Matrix P = Matrix::Identity();
     begin(State::Zero().eval().data(), P.data(), N);
@@ -205,6 +206,11 @@ class PackedModes final : public ModeBank {
           -0.5 * (update.nis[lane] + std::log(update.determinant[lane]) + M * std::log(2.0 * std::numbers::pi));
       const bool valid = has_R && update.has_gain[lane] && std::isfinite(gained) && is_valid(mode);
       log_likelihood[mode] = valid ? gained : -kInfinity;
+    }
+    for (int lane = 0; lane < blocks() * kLanes; ++lane) {
+      if (log_likelihood[mode_at(lane)] > -kInfinity) continue;
+      const auto [x, P] = at(modes_, lane);  // what failed stays as it was
+      set(next_[static_cast<std::size_t>(lane / kLanes)], lane % kLanes, x, P);
     }
   }
 

@@ -46,6 +46,8 @@ std::optional<std::string> bytes_of_base64(std::string_view text) {
       if (value < 0) return std::nullopt;
       word = word << 6U | static_cast<std::uint32_t>(value);
     }
+    const bool is_last = i + 4 == text.size();
+    if (is_last && (word & ((1U << 8 * padding) - 1U)) != 0) return std::nullopt;  // bits behind the last byte
     for (std::size_t k = 0; k < 3; ++k) bytes += static_cast<char>(word >> (16 - 8 * k) & 255U);
   }
   bytes.resize(bytes.size() - padding);

@@ -93,6 +93,9 @@ DebriefLine read_contact(Words& words, std::size_t kind) {
   if (kind == 2) contact.bearing_sigma_deg = words.number_or_null("bearing accuracy", 0.0, kMostDeg);
   if (kind >= 1) contact.frequency_hz = words.number_or_null("frequency", 0.0, kMost);
   if (kind == 2) contact.frequency_sigma_hz = words.number_or_null("frequency accuracy", 0.0, kMost);
+  // An accuracy of 0 states none.
+  for (double* sigma : {&contact.bearing_sigma_deg, &contact.frequency_sigma_hz})
+    if (*sigma == 0.0) *sigma = kNaN;
   contact.range_yd = words.number_or_null("range", 0.0, kMost);
   contact.sensor = words.next();
   return contact;

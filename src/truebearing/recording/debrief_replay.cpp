@@ -112,7 +112,11 @@ std::string table_of_contacts(const std::vector<Row>& contacts) {
   const auto any = [&](auto has) { return std::any_of(contacts.begin(), contacts.end(), has); };
   const bool heard = any([](const Row& row) { return !std::isnan(row.second.frequency_hz); });
   const bool ranged = any([](const Row& row) { return !std::isnan(row.second.range_yd); });
-  const bool moves = any([](const Row& row) { return !std::isnan(row.second.from.speed_kn); });
+  // Where one lacks the velocity of its place, bearings and ranges do without; a frequency cannot.
+  const bool moves = any([](const Row& row) { return !std::isnan(row.second.from.speed_kn); }) &&
+                     (heard || !any([](const Row& row) {
+                        return !std::isnan(row.second.from.latitude_deg) && std::isnan(row.second.from.speed_kn);
+                      }));
   const bool accurate = !ranged && !any([&](const Row& row) {
     return std::isnan(row.second.bearing_sigma_deg) || (heard && std::isnan(row.second.frequency_sigma_hz));
   });

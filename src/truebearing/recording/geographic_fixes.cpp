@@ -49,6 +49,11 @@ std::size_t remove_null_island(GeographicTarget& target) {
   return removed;
 }
 
+void remove_without_altitude(GeographicTarget& target) {
+  for (GeographicFix& fix : target.fixes)
+    if (std::isnan(fix.altitude_m)) fix.latitude_deg = fix.longitude_deg = kNaN;
+}
+
 void remove_glitches(GeographicTarget& target, double max_speed_mps) {
   constexpr std::size_t kMostChains = 8;  // the shortest gives way
   const auto is_shorter = [](const auto& a, const auto& b) { return a.second.length < b.second.length; };

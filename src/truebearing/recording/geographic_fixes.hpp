@@ -50,6 +50,9 @@ std::size_t remove_null_island(GeographicTarget& target);
 /// position, be it the first, does not lock out the good ones. A fix goes on with the longest chain that it could.
 void remove_glitches(GeographicTarget& target, double max_speed_mps);
 
+/// Takes out the fixes without an altitude, which are no places in space.
+void remove_without_altitude(GeographicTarget& target);
+
 /// Takes out the velocities that no target has.
 void remove_wrong_velocities(GeographicTarget& target, double max_speed_mps);
 

@@ -275,6 +275,7 @@ GeographicTracks read_geographic_tracks(CsvReader csv, const GeographicTrackOpti
   for (GeographicTarget& target : read_targets(csv, recording, tracks)) {
     put_in_order(target);
     tracks.null_island += remove_null_island(target);
+    if (options.in_space) remove_without_altitude(target);
     if (std::isfinite(options.max_speed_mps)) remove_glitches(target, options.max_speed_mps);
     remove_wrong_velocities(target, options.max_speed_mps);
     rows += target.fixes.size();

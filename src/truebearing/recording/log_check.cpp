@@ -121,8 +121,8 @@ class LogSurvey {
   }
 
   void add_row(TargetRows& rows, double time_s) {
-    report_.first_s = report_.rows == 1 ? time_s : std::min(report_.first_s, time_s);
-    report_.last_s = report_.rows == 1 ? time_s : std::max(report_.last_s, time_s);
+    report_.first_s = std::fmin(report_.first_s, time_s);
+    report_.last_s = std::fmax(report_.last_s, time_s);
     std::vector<double> cells(measured_.size(), kNaN);
     for (std::size_t i = 0; i < cells.size(); ++i) csv_.read_number(measured_[i], cells[i]);
     const bool is_equal = !cells.empty() && cells == rows.cells;
@@ -146,7 +146,6 @@ class LogSurvey {
 
   void summarise_times() {
     report_.targets = target_ ? targets_.size() : 0;
-    if (report_.rows == 0 || !time_) report_.first_s = report_.last_s = kNaN;
     if (periods_s_.empty()) {
       report_.median_period_s = report_.least_period_s = report_.greatest_period_s = kNaN;
       return;

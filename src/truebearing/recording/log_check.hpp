@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "truebearing/core/constants.hpp"
 #include "truebearing/recording/recording_options.hpp"
 
 namespace truebearing {
@@ -29,7 +30,7 @@ struct LogReport {
   std::size_t targets = 0;  ///< that a column tells apart; 0 where none does
   std::vector<ColumnReport> columns;
 
-  double first_s = 0.0, last_s = 0.0;  ///< earliest and latest time; NaN where there is none
+  double first_s = kNaN, last_s = kNaN;  ///< earliest and latest time; NaN where there is none
   double median_period_s = 0.0, least_period_s = 0.0,
          greatest_period_s = 0.0;    ///< of a target's rows; NaN of fewer than 2
   std::size_t gaps = 0;              ///< periods of more than three medians

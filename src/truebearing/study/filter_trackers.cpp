@@ -22,6 +22,14 @@ namespace truebearing {
 namespace {
 
 // What the filters ask of measurements beyond a Jacobian.
+// Of a range rate it is what a filter that linearises one estimate leaves out: points have it already, and a bank would
+// take it of all its hypotheses together.
+void refuse_second_order(const TableReader& tracker, const MeasurementChoice& measurement) {
+  if (measurement.second_order)
+    throw tracker.error("measurement.second_order", "is of a filter that linearises one estimate",
+                        "kind = \"kalman\" or \"imm\" of such filters");
+}
+
 void check_filter(const TableReader& tracker, const std::string& key, FilterKind filter,
                   const MeasurementChoice& measurement) {
   const bool bearings = measurement.sensor->tells_bearing() && measurement.dimensions() == 2;
@@ -31,6 +39,7 @@ void check_filter(const TableReader& tracker, const std::string& key, FilterKind
   if (filter == FilterKind::log_polar && (measurement.model != "bearing" || measurement.has_frequency))
     throw tracker.error(key, "is \"log_polar\", whose coordinates \"" + measurement.model + "\" does not suit",
                         "measurement.model = \"bearing\"");
+  if (filter != FilterKind::kalman) refuse_second_order(tracker, measurement);
 }
 
 std::unique_ptr<TrackedState> state_under(const TableReader& tracker, FilterKind filter,
@@ -111,6 +120,7 @@ std::unique_ptr<Tracker> make_kalman_bank(TableReader& table) {
   constexpr std::size_t kMost = 100000;
   const MeasurementChoice measurement = read_measurement(table);
   const FilterKind filter = read_filter(table, measurement, false, {"kalman", "unscented", "modified_gain"});
+  refuse_second_order(table, measurement);
   if (measurement.is_lorenz())
     throw table.error("kind", "is \"kalman_bank\", which supposes velocities that \"lorenz\" has none of",
                       "measurements of a target on the line, in the plane or in space");

@@ -252,10 +252,15 @@ std::unique_ptr<AnySensor> without_bias(TableReader& table, std::unique_ptr<AnyS
   return std::make_unique<BiasedSensor>(std::move(sensor), in_z);
 }
 
+bool adds_second_order(const TableReader& measurement) {
+  return (*measurement.raw())["second_order"].value_or(false);
+}
+
 // [sensors.NAME].
 struct OneSensor {
   std::unique_ptr<AnySensor> sensor;
   double gate_nis;
+  bool second_order;
 };
 
 OneSensor read_sensor(TableReader table, const StateSpace& space, double factor) {
@@ -267,7 +272,7 @@ OneSensor read_sensor(TableReader table, const StateSpace& space, double factor)
   if (!is_of(space.name) && !(space == plane_frequency_space() && is_of("plane")))
     throw table.error("model", fmt::format("is \"{}\", which has no meaning in the space {}", kind.model, space.name),
                       fmt::format("the space {}", fmt::join(kind.spaces, ", ")));
-  OneSensor one{without_bias(table, kind.read({table, space, factor})), kInfinity};
+  OneSensor one{without_bias(table, kind.read({table, space, factor})), kInfinity, adds_second_order(table)};
   static_cast<void>(table.number_or("clock_offset_s", 0.0, {-1e6, 1e6}));  // which logs are read by
   if (table.has("gate_probability"))
     one.gate_nis = chi_square_quantile(table.number("gate_probability", kGate), one.sensor->size());
@@ -299,13 +304,15 @@ MeasurementChoice read_sensors(TableReader& tracker, TableReader& table, double 
       *find_state_space(tracker.choice_or("space", {"plane", "plane_frequency", "space"}, "plane"));
   std::vector<SeveralSensors::Part> parts;
   std::vector<double> gates;
+  bool second_order = false;
   for (const std::string& name : names) {
     OneSensor one = read_sensor(sensors.table(name), space, factor);
     gates.push_back(one.gate_nis);
+    second_order |= one.second_order;
     parts.push_back({name, std::move(one.sensor), std::find(used.begin(), used.end(), name) != used.end()});
   }
   MeasurementChoice choice{kSensors, std::make_unique<SeveralSensors>(std::move(parts)), &space,
-                           space == plane_frequency_space()};
+                           space == plane_frequency_space(), second_order};
   if (std::any_of(gates.begin(), gates.end(), [](double gate) { return gate < kInfinity; }))
     choice.gate_nis_of = std::move(gates);
   return choice;
@@ -323,7 +330,7 @@ MeasurementChoice read_measurement(TableReader& tracker, double factor) {
   }
   const StateSpace& space = *find_state_space(tracker.choice_or("space", kind.spaces, kind.spaces.front()));
   MeasurementChoice choice{kind.model, without_bias(table, kind.read({table, space, factor})), &space,
-                           kind.has_frequency};
+                           kind.has_frequency, adds_second_order(table)};
   table.finish();
   return choice;
 }

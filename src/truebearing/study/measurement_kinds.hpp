@@ -19,6 +19,7 @@ struct MeasurementChoice {
   std::unique_ptr<AnySensor> sensor;  ///< in `space`
   const StateSpace* space;            ///< of the records
   bool has_frequency = false;         ///< the state has the frequency of the source behind the velocities
+  bool second_order = false;          ///< the sensor adds the second order of a range rate
   std::vector<double> gate_nis_of{};  ///< of each of several sensors, where they have gates of their own; else empty
 
   bool is_lorenz() const { return *space == lorenz_space(); }

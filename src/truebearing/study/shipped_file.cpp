@@ -17,7 +17,10 @@ std::optional<std::filesystem::path> find_data_folder() {
 
 std::string named_or_shipped(const std::string& name, const std::string& folder) {
   std::error_code failure;
-  if (std::filesystem::path(name).has_parent_path() || std::filesystem::exists(name, failure)) return name;
+  // A folder of that name, of plots say, is no study.
+  if (std::filesystem::path(name).has_parent_path() ||
+      (std::filesystem::exists(name, failure) && !std::filesystem::is_directory(name, failure)))
+    return name;
   const std::optional<std::filesystem::path> shared = find_data_folder();
   if (!shared) return name;
   for (const char* extension : {"", ".toml"}) {

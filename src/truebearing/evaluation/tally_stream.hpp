@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // TallyStream: a tally of some runs as bytes, and the same bytes added to the tally of the runs before them. A tally
-// names its sums once, in exchange(), and this writes them or adds to them. So it does not matter in which thread,
-// process or machine a block of runs was computed: what adds the same blocks in the same order has the same figures to
-// the last bit.
+// names its sums once, in exchange(), and this writes them or adds to them. So it does not matter in which thread or
+// process a block of runs was computed, nor on which machine of one kind (docs/scale.md): what adds the same blocks in the
+// same order has the same figures to the last bit.
 #pragma once
 
 #include <bit>

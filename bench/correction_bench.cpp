@@ -15,6 +15,7 @@
 #include "kalman_bench.hpp"
 #include "truebearing/correction/corrected_tracker.hpp"
 #include "truebearing/filter/kalman.hpp"
+#include "truebearing/filter/shared_covariance_group.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
 #include "truebearing/tracker/filter_bank.hpp"
 #include "truebearing/tracker/filter_tracker_of.hpp"
@@ -118,21 +119,21 @@ void corrected(benchmark::State& state) {
 BENCHMARK(corrected)->ArgName("rules")->Arg(16)->Arg(32);
 
 void bank(benchmark::State& state) {
-  const std::vector<std::shared_ptr<const SizedMotion<2>>> motions{erased(motion(0.4)), erased(motion(1.6))};
+  const AnyMotions motions{erased(motion(0.4)), erased(motion(1.6))};
   std::vector<std::unique_ptr<AnySensor>> sensors;
   for (const double variance_factor : {0.25, 0.5, 1.0, 2.0, 4.0})
     sensors.push_back(sensor_of(sensor(1e7 * variance_factor)));
   std::vector<FilterBank::Hypothesis> hypotheses;
-  std::vector<std::size_t> motion_of;
-  for (int velocity_mps = -375; velocity_mps <= 375; velocity_mps += 50)
-    for (std::size_t s = 0; s < sensors.size(); ++s)
-      for (std::size_t m = 0; m < motions.size(); ++m) {
+  std::vector<FilterGroup::Member> members;
+  for (std::size_t s = 0; s < sensors.size(); ++s)
+    for (std::size_t m = 0; m < motions.size(); ++m)
+      for (int velocity_mps = -375; velocity_mps <= 375; velocity_mps += 50) {
         hypotheses.push_back(
-            {Eigen::Vector2d(0.0, velocity_mps), Eigen::Vector2d(1e6, 484.0).asDiagonal().toDenseMatrix(), s});
-        motion_of.push_back(m);
+            {Eigen::Vector2d(0.0, velocity_mps), Eigen::Vector2d(1e6, 484.0).asDiagonal().toDenseMatrix()});
+        members.push_back({m, s});
       }
-  FilterBank filters(line_space(), std::make_unique<FilterGroupOf<KalmanFilter<2>>>(motions, motion_of),
-                     std::move(sensors), std::move(hypotheses));
+  FilterBank filters(line_space(), make_shared_covariance_group(motions, members, 1), std::move(sensors),
+                     std::move(hypotheses));
   run(state, filters);
 }
 BENCHMARK(bank);

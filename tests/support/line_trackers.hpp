@@ -43,19 +43,19 @@ struct RadarFilter {
 inline std::unique_ptr<FilterBank> radar_bank(const std::vector<RadarFilter>& hypotheses,
                                               const std::vector<double>& log_weights = {}) {
   std::vector<std::shared_ptr<const SizedMotion<2>>> motions;
-  std::vector<std::size_t> motion_of;
+  std::vector<FilterGroup::Member> members;
   std::vector<std::unique_ptr<AnySensor>> sensors;
   std::vector<FilterBank::Hypothesis> priors;
   for (const RadarFilter& radar : hypotheses) {
     const std::size_t i = priors.size();
     motions.push_back(erased(radar.motion()));
-    motion_of.push_back(i);
+    members.push_back({i, i});
     sensors.push_back(sensor_of(radar.sensor()));
     priors.push_back(
-        {radar.x0, radar.variance.asDiagonal().toDenseMatrix(), i, log_weights.empty() ? 0.0 : log_weights[i]});
+        {radar.x0, radar.variance.asDiagonal().toDenseMatrix(), log_weights.empty() ? 0.0 : log_weights[i]});
   }
   return std::make_unique<FilterBank>(
-      line_space(), std::make_unique<FilterGroupOf<KalmanFilter<2>>>(std::move(motions), std::move(motion_of)),
+      line_space(), std::make_unique<FilterGroupOf<KalmanFilter<2>>>(std::move(motions), std::move(members)),
       std::move(sensors), std::move(priors));
 }
 

@@ -28,9 +28,9 @@ const PriorStart kPrior{Eigen::Vector4d(0.0, kRange_m, 0.0, 0.0), Eigen::Vector4
 FilterBank bank() {
   std::vector<std::unique_ptr<AnySensor>> sensors;
   sensors.push_back(sensor_of(kSensor));
-  const FilterBank::Hypothesis one{kPrior.x, kPrior.P, 0, 0.0};
+  const FilterBank::Hypothesis one{kPrior.x, kPrior.P};
   const AnyMotions motions{erased(kMotion)};
-  return {plane_space(), make_filter_group(FilterKind::kalman, motions, {0, 0}), std::move(sensors), {one, one}, 0.0};
+  return {plane_space(), make_filter_group(FilterKind::kalman, motions, {{}, {}}), std::move(sensors), {one, one}, 0.0};
 }
 
 // Errors at the end of 300 looks at a target that crosses 100 km off, where a converted measurement is a hundred times

@@ -19,6 +19,14 @@ namespace truebearing {
 
 class FilterGroup {
  public:
+  /// What one filter of the group believes in.
+  struct Member {
+    std::size_t motion = 0;  ///< place among the group's
+    std::size_t sensor = 0;  ///< place among the measurements of an update
+
+    bool operator==(const Member&) const = default;
+  };
+
   virtual ~FilterGroup() = default;
 
   virtual int states() const = 0;  ///< n
@@ -28,11 +36,11 @@ class FilterGroup {
   virtual bool begin(std::size_t i, const double* x, const double* P) = 0;
   /// All cross dt_s seconds. False where one failed: then some have crossed and some have not.
   virtual bool predict(double dt_s) = 0;
-  /// Member i takes measurements[taken[i]]; gained[i] becomes the log likelihood of its innovation, up to the power of
-  /// 2 pi that all share, and minus infinity where it failed.
-  virtual void update(std::span<const AnyMeasurement* const> measurements, std::span<const std::size_t> taken,
-                      std::span<double> gained) = 0;
-  /// x = sum w_i x_i / sum w, P = sum w_i / sum w (P_i + (x_i - x)(x_i - x)'), over the members with a weight.
+  /// Each takes its sensor's of `measurements`; gained[i] becomes the log likelihood of member i's innovation, up to the
+  /// power of 2 pi that all share, and minus infinity where it failed.
+  virtual void update(std::span<const AnyMeasurement* const> measurements, std::span<double> gained) = 0;
+  /// x = sum w_i x_i / sum w, P = sum w_i / sum w (P_i + (x_i - x)(x_i - x)'), over the members with a weight. The list
+  /// of weights is padded with zeros to a multiple of kLanes (core/simd_lanes.hpp).
   virtual void mix(std::span<const double> weights, double sum, BoundedVector& x, BoundedMatrix& P) const = 0;
   /// x (n) and P (n x n) of member i.
   virtual void estimate(std::size_t i, BoundedVector& x, BoundedMatrix& P) const = 0;
@@ -70,82 +78,81 @@ class FilterGroupOf final : public FilterGroup {
   using Covariance = Eigen::Matrix<double, N, N>;
 
  public:
-  /// motion_of[i]: place in `motions` of member i's.
-  FilterGroupOf(std::vector<std::shared_ptr<const Motion>> motions, std::vector<std::size_t> motion_of)
-      : motions_(std::move(motions)), motion_of_(std::move(motion_of)), transitions_(motions_.size()) {
-    members_.assign(motion_of_.size(), Filter(State::Zero(), Covariance::Identity()));
+  FilterGroupOf(std::vector<std::shared_ptr<const Motion>> motions, std::vector<Member> members)
+      : motions_(std::move(motions)), members_(std::move(members)), transitions_(motions_.size()) {
+    filters_.assign(members_.size(), Filter(State::Zero(), Covariance::Identity()));
   }
 
   int states() const override { return N; }
-  std::size_t size() const override { return members_.size(); }
+  std::size_t size() const override { return filters_.size(); }
 
   bool begin(std::size_t i, const double* x, const double* P) override {
-    members_[i] = Filter(matrix_at<N, 1>(x), matrix_at<N, N>(P));
-    return is_finite(members_[i].x()) && is_finite(members_[i].P());
+    filters_[i] = Filter(matrix_at<N, 1>(x), matrix_at<N, N>(P));
+    return is_finite(filters_[i].x()) && is_finite(filters_[i].P());
   }
 
   bool predict(double dt_s) override {
     for (std::size_t m = 0; m < motions_.size(); ++m)
       if (motions_[m]->is_linear()) transitions_[m] = {motions_[m]->F(State::Zero(), dt_s), motions_[m]->Q(dt_s)};
     bool valid = true;
-    for (std::size_t i = 0; i < motion_of_.size(); ++i) {
-      const std::size_t m = motion_of_[i];
+    for (std::size_t i = 0; i < filters_.size(); ++i) {
+      const std::size_t m = members_[i].motion;
       if (motions_[m]->is_linear())
-        valid &= members_[i].predict(transitions_[m], dt_s) != StepStatus::failed;
+        valid &= filters_[i].predict(transitions_[m], dt_s) != StepStatus::failed;
       else
-        valid &= members_[i].predict(*motions_[m], dt_s) != StepStatus::failed;
+        valid &= filters_[i].predict(*motions_[m], dt_s) != StepStatus::failed;
     }
     return valid;
   }
 
-  void update(std::span<const AnyMeasurement* const> measurements, std::span<const std::size_t> taken,
-              std::span<double> gained) override {
-    for (std::size_t i = 0; i < gained.size(); ++i)
-      gained[i] = with_length(*measurements[taken[i]], [&](const auto& sized) { return take(members_[i], sized); });
+  void update(std::span<const AnyMeasurement* const> measurements, std::span<double> gained) override {
+    for (std::size_t i = 0; i < filters_.size(); ++i)
+      gained[i] =
+          with_length(*measurements[members_[i].sensor], [&](const auto& sized) { return take(filters_[i], sized); });
   }
 
   void mix(std::span<const double> weights, double sum, BoundedVector& x, BoundedMatrix& P) const override {
     State mean;
     fill(mean, 0.0);
-    for (std::size_t i = 0; i < weights.size(); ++i)
-      for (int k = 0; k < N; ++k) mean(k) += weights[i] * members_[i].x()(k);
+    for (std::size_t i = 0; i < filters_.size(); ++i)
+      for (int k = 0; k < N; ++k) mean(k) += weights[i] * filters_[i].x()(k);
     for (int k = 0; k < N; ++k) mean(k) /= sum;
     Covariance spread;
     fill(spread, 0.0);
-    for (std::size_t i = 0; i < weights.size(); ++i) {
+    for (std::size_t i = 0; i < filters_.size(); ++i) {
       if (weights[i] == 0.0) continue;  // it may be so far off that its spread is not finite
       const double weight = weights[i] / sum;
-      const State d = minus(members_[i].x(), mean);
+      const State d = minus(filters_[i].x(), mean);
       for (int col = 0; col < N; ++col)
-        for (int row = 0; row < N; ++row) spread(row, col) += weight * (members_[i].P()(row, col) + d(row) * d(col));
+        for (int row = 0; row < N; ++row) spread(row, col) += weight * (filters_[i].P()(row, col) + d(row) * d(col));
     }
     x = mean;
     P = spread;
   }
 
   void estimate(std::size_t i, BoundedVector& x, BoundedMatrix& P) const override {
-    x = members_[i].x();
-    P = members_[i].P();
+    x = filters_[i].x();
+    P = filters_[i].P();
   }
   std::unique_ptr<TrackedState> state_of(std::size_t i) const override {
-    return std::make_unique<FilterState<Filter>>(motions_[motion_of_[i]]);
+    return std::make_unique<FilterState<Filter>>(motions_[members_[i].motion]);
   }
 
-  void assign(const FilterGroup& other) override { members_ = static_cast<const FilterGroupOf&>(other).members_; }
-  std::unique_ptr<FilterGroup> fresh() const override { return std::make_unique<FilterGroupOf>(motions_, motion_of_); }
+  void assign(const FilterGroup& other) override { filters_ = static_cast<const FilterGroupOf&>(other).filters_; }
+  std::unique_ptr<FilterGroup> fresh() const override { return std::make_unique<FilterGroupOf>(motions_, members_); }
 
  private:
   template <int M>
-  static double take(Filter& member, const SizedMeasurement<M>& measurement) {
-    const Update<N, M> update = update_by(member, measurement);
+  static double take(Filter& filter, const SizedMeasurement<M>& measurement) {
+    const Update<N, M> update = update_by(filter, measurement);
     const double gained = -0.5 * (update.nis + log_determinant(update.S));
     return update.status == StepStatus::ok && std::isfinite(gained) ? gained : -std::numeric_limits<double>::infinity();
   }
 
   std::vector<std::shared_ptr<const Motion>> motions_;
-  std::vector<std::size_t> motion_of_;
+  std::vector<Member> members_;
   std::vector<GivenTransition<N>> transitions_;
-  std::vector<Filter> members_;
+  std::vector<Filter> filters_;
 };
 
 }  // namespace truebearing

@@ -42,17 +42,17 @@ std::unique_ptr<TrackedState> state(const std::shared_ptr<const AnyMotion>& moti
 }
 
 template <typename Filter>
-std::unique_ptr<FilterGroup> several(const AnyMotions& motions, const std::vector<std::size_t>& motion_of) {
+std::unique_ptr<FilterGroup> several(const AnyMotions& motions, const std::vector<FilterGroup::Member>& members) {
   std::vector<std::shared_ptr<const SizedMotion<Filter::kStates>>> sized;
   for (const auto& motion : motions)
     sized.push_back(std::static_pointer_cast<const SizedMotion<Filter::kStates>>(motion));
-  return std::make_unique<FilterGroupOf<Filter>>(std::move(sized), motion_of);
+  return std::make_unique<FilterGroupOf<Filter>>(std::move(sized), members);
 }
 
 template <template <int> typename Filter, int kLeast = 2, int kMost = 9>
-std::unique_ptr<FilterGroup> group(const AnyMotions& motions, const std::vector<std::size_t>& motion_of) {
+std::unique_ptr<FilterGroup> group(const AnyMotions& motions, const std::vector<FilterGroup::Member>& members) {
   return by_length<kLeast, kMost, FilterGroup>(motions.front()->states(), [&]<int N>(std::integral_constant<int, N>) {
-    return several<Filter<N>>(motions, motion_of);
+    return several<Filter<N>>(motions, members);
   });
 }
 
@@ -77,16 +77,16 @@ std::unique_ptr<TrackedState> make_filter_state(FilterKind kind, const std::shar
 }
 
 std::unique_ptr<FilterGroup> make_filter_group(FilterKind kind, const AnyMotions& motions,
-                                               const std::vector<std::size_t>& motion_of) {
+                                               const std::vector<FilterGroup::Member>& members) {
   switch (kind) {
     case FilterKind::kalman:
-      return group<Extended>(motions, motion_of);
+      return group<Extended>(motions, members);
     case FilterKind::unscented:
-      return group<Unscented>(motions, motion_of);
+      return group<Unscented>(motions, members);
     case FilterKind::modified_gain:
-      return group<ModifiedGain, 4, 7>(motions, motion_of);
+      return group<ModifiedGain, 4, 7>(motions, members);
     case FilterKind::log_polar:
-      return motions.front()->states() == 4 ? several<LogPolarFilter<>>(motions, motion_of) : nullptr;
+      return motions.front()->states() == 4 ? several<LogPolarFilter<>>(motions, members) : nullptr;
     case FilterKind::square_root:
     case FilterKind::conventional:
       return nullptr;

@@ -32,10 +32,10 @@ using AnyMotions = std::vector<std::shared_ptr<const AnyMotion>>;
 /// One filter under `motion`, or nothing where the kind is not compiled for states of that length.
 std::unique_ptr<TrackedState> make_filter_state(FilterKind kind, const std::shared_ptr<const AnyMotion>& motion);
 
-/// A group of filters of one kind, under motions of one length; motion_of[i] is the place of member i's. Nothing where
-/// the kind is not compiled for it; of the forms of the Kalman filter Joseph's alone is.
+/// A group of filters of one kind, under motions of one length. Nothing where the kind is not compiled for it; of the
+/// forms of the Kalman filter Joseph's alone is.
 std::unique_ptr<FilterGroup> make_filter_group(FilterKind kind, const AnyMotions& motions,
-                                               const std::vector<std::size_t>& motion_of);
+                                               const std::vector<FilterGroup::Member>& members);
 
 // WORDS TYPE(n) for each length of a state: on the line 2 and 3, in the plane 4 to 7, in space 6, 7 and 9.
 #define TRUEBEARING_EACH_PLANE_LENGTH(WORDS, TYPE) \

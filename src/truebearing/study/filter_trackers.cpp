@@ -11,6 +11,7 @@
 #include "truebearing/filter/filter_kinds.hpp"
 #include "truebearing/filter/interacting_multiple_model.hpp"
 #include "truebearing/filter/scaled_noise.hpp"
+#include "truebearing/filter/shared_covariance_group.hpp"
 #include "truebearing/study/filter_configuration.hpp"
 #include "truebearing/study/measurement_kinds.hpp"
 #include "truebearing/study/motion_kinds.hpp"
@@ -150,17 +151,21 @@ std::unique_ptr<Tracker> make_kalman_bank(TableReader& table) {
   const PriorStart prior = read_prior_start(start, motions.front()->states());
   start.finish();
   std::vector<FilterBank::Hypothesis> hypotheses;
-  std::vector<std::size_t> motion_of;
-  for (std::size_t v = 0; v < supposed; ++v)
-    for (std::size_t s = 0; s < sensors.size(); ++s)
-      for (std::size_t m = 0; m < motions.size(); ++m) {
-        FilterBank::Hypothesis hypothesis{prior.x, prior.P, s, 0.0};
+  std::vector<FilterGroup::Member> members;
+  for (std::size_t s = 0; s < sensors.size(); ++s)
+    for (std::size_t m = 0; m < motions.size(); ++m)
+      for (std::size_t v = 0; v < supposed; ++v) {
+        FilterBank::Hypothesis hypothesis{prior.x, prior.P};
         for (int i = 0; i < d; ++i) hypothesis.x[d + i] = velocities[v * static_cast<std::size_t>(d) + std::size_t(i)];
         hypotheses.push_back(hypothesis);
-        motion_of.push_back(m);
+        members.push_back({m, s});
       }
-  return std::make_unique<FilterBank>(*measurement.space, make_filter_group(filter, motions, motion_of),
-                                      std::move(sensors), std::move(hypotheses), prior.time_s);
+  std::unique_ptr<FilterGroup> group;
+  if (filter == FilterKind::kalman && measurement.sensor->measures_position())
+    group = make_shared_covariance_group(motions, members, measurement.sensor->size());
+  if (!group) group = make_filter_group(filter, motions, members);
+  return std::make_unique<FilterBank>(*measurement.space, std::move(group), std::move(sensors), std::move(hypotheses),
+                                      prior.time_s);
 }
 
 std::unique_ptr<Tracker> make_range_bank(TableReader& table) {

@@ -2,11 +2,12 @@
 #include "truebearing/tracker/filter_bank.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <utility>
 
 #include "truebearing/core/constants.hpp"
+#include "truebearing/core/simd_lanes.hpp"
+#include "truebearing/tracker/filter_bank_kernel.hpp"
 #include "truebearing/tracker/publishable.hpp"
 
 namespace truebearing {
@@ -27,12 +28,11 @@ FilterBank::FilterBank(const StateSpace& space, std::unique_ptr<FilterGroup> gro
       hypotheses_(std::move(hypotheses)),
       suppose_(std::move(suppose)),
       taken_(sensors_.size()),
-      gained_(hypotheses_.size()),
-      weights_(hypotheses_.size()) {
+      gained_(static_cast<std::size_t>(padded_to_lanes(static_cast<int>(hypotheses_.size())))),
+      weights_(gained_.size()) {
   if (hypotheses_.empty() || !group || group->size() != hypotheses_.size() || space.size() > group->states())
     throw std::invalid_argument("a bank has a filter for each hypothesis, of states as long as its space");
-  for (const Hypothesis& hypothesis : hypotheses_) sensor_of_.push_back(hypothesis.sensor);
-  members_ = {std::move(group), std::vector<double>(hypotheses_.size())};
+  members_ = {std::move(group), std::vector<double>(gained_.size(), -kInfinity)};
   shown_ = another();
   reset();
 }
@@ -94,7 +94,8 @@ bool FilterBank::begin() {
     valid &= members_.filters->begin(i, hypotheses_[i].x.data(), hypotheses_[i].P.data());
     members_.log_weights[i] = hypotheses_[i].log_weight;
   }
-  return valid;
+  std::fill(gained_.begin(), gained_.end(), 0.0);
+  return kernels::gain_weights(gained_.data(), gained_.size(), members_.log_weights.data()) && valid;
 }
 
 std::span<const StepRecord> FilterBank::start_from(const Measurement& measurement) {
@@ -126,24 +127,13 @@ StepStatus FilterBank::weigh(const Measurement& measurement) {
     expected_ = {record_.x, record_.P};
   }
   for (std::size_t s = 0; s < sensors_.size(); ++s) taken_[s] = &sensors_[s]->take(measurement, expected_);
-  shown_.filters->update(taken_, sensor_of_, gained_);
-  double largest = -kInfinity;
-  for (std::size_t i = 0; i < gained_.size(); ++i) {
-    shown_.log_weights[i] += gained_[i];
-    largest = std::max(largest, shown_.log_weights[i]);
-  }
-  if (largest == -kInfinity) return StepStatus::failed;
-  for (double& log_weight : shown_.log_weights) log_weight -= largest;
-  return StepStatus::ok;
+  shown_.filters->update(taken_, gained_);
+  return kernels::gain_weights(gained_.data(), gained_.size(), shown_.log_weights.data()) ? StepStatus::ok
+                                                                                          : StepStatus::failed;
 }
 
 std::span<const StepRecord> FilterBank::publish(const Members& members) {
-  const double largest = *std::max_element(members.log_weights.begin(), members.log_weights.end());
-  double total = 0.0;
-  for (std::size_t i = 0; i < weights_.size(); ++i) {
-    weights_[i] = std::exp(members.log_weights[i] - largest);
-    total += weights_[i];
-  }
+  const double total = kernels::weights_of(members.log_weights.data(), weights_.size(), weights_.data());
   members.filters->mix(weights_, total, record_.x, record_.P);
   if (const int n = space_->size(); n < record_.x.size()) {  // without the components that the space does not have
     record_.x.conservativeResize(n);

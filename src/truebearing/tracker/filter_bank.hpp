@@ -22,11 +22,10 @@ namespace truebearing {
 
 class FilterBank final : public Tracker {
  public:
-  /// The prior of one filter of the group, the sensor that it believes in, and its weight.
+  /// The prior of one filter of the group, and its weight.
   struct Hypothesis {
     BoundedVector x;
     BoundedMatrix P;
-    std::size_t sensor = 0;   ///< place among the bank's
     double log_weight = 0.0;  ///< logarithm of its prior probability, up to a common constant
   };
 
@@ -34,7 +33,7 @@ class FilterBank final : public Tracker {
   /// then. False where it cannot: the next usable measurement is then the first.
   using Supposition = std::function<bool(const Measurement&, const std::optional<TargetGuess>&, std::span<Hypothesis>)>;
 
-  /// One hypothesis for each member of the group. The sensors take the same measurements, what is a value to the first
+  /// One hypothesis for each member of the group, whose sensors these are. They take the same measurements, what is a value to the first
   /// is one to all. The priors belong to start_time_s.
   FilterBank(const StateSpace& space, std::unique_ptr<FilterGroup> group,
              std::vector<std::unique_ptr<AnySensor>> sensors, std::vector<Hypothesis> hypotheses,
@@ -55,12 +54,14 @@ class FilterBank final : public Tracker {
   bool has_used() const { return used_; }  ///< the last measurement
   double used_time_s() const { return used_time_s_; }
   const FilterGroup& filters() const { return *members_.filters; }
-  std::span<const double> log_weights() const { return members_.log_weights; }  ///< up to a common constant
+  std::span<const double> log_weights() const {  ///< of the heaviest 0
+    return std::span(members_.log_weights).first(hypotheses_.size());
+  }
 
  private:
   struct Members {
     std::unique_ptr<FilterGroup> filters;
-    std::vector<double> log_weights;
+    std::vector<double> log_weights;  // padded (filter_bank_kernel.hpp), of the heaviest 0
   };
 
   Members another() const;
@@ -84,12 +85,11 @@ class FilterBank final : public Tracker {
   double used_time_s_ = 0.0;
   std::optional<TargetGuess> guess_;  // the latest since reset
   StepRecord record_;
-  std::vector<std::size_t> sensor_of_;  // of each hypothesis
   // Of one step.
   Prediction expected_;                       // of all members together
   std::vector<const AnyMeasurement*> taken_;  // by each sensor
   std::vector<double> gained_;
-  std::vector<double> weights_;
+  std::vector<double> weights_;  // padded with zeros
 };
 
 }  // namespace truebearing

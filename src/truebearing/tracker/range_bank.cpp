@@ -13,7 +13,7 @@ std::unique_ptr<Tracker> range_bank(const StateSpace& space, FilterKind filter,
                                     const std::shared_ptr<const AnyMotion>& motion, std::unique_ptr<AnySensor> sensor,
                                     const RangeHypotheses& hypotheses) {
   const auto size = static_cast<std::size_t>(hypotheses.size());
-  std::unique_ptr<FilterGroup> group = make_filter_group(filter, {motion}, std::vector<std::size_t>(size, 0));
+  std::unique_ptr<FilterGroup> group = make_filter_group(filter, {motion}, std::vector<FilterGroup::Member>(size));
   if (!group) return nullptr;
   const int states = motion->states();
   const std::shared_ptr<const AnySensor> looked_at = sensor->fresh();
@@ -32,7 +32,7 @@ std::unique_ptr<Tracker> range_bank(const StateSpace& space, FilterKind filter,
       const std::optional<PriorStart> start = looked_at->believe(weighted.state, first);
       if (!start) return false;
       const PriorStart whole = lengthened(with_climb(*start, climb_sigma_mps), states, 0.0);
-      bank[i] = {whole.x, whole.P, 0, weighted.log_weight};
+      bank[i] = {whole.x, whole.P, weighted.log_weight};
     }
     return true;
   };

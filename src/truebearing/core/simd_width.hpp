@@ -15,6 +15,9 @@ template <int kCount>
 struct VectorOf {
   using Doubles [[gnu::vector_size(kCount * sizeof(double))]] = double;
   using Bits [[gnu::vector_size(kCount * sizeof(std::int64_t))]] = std::int64_t;
+  using BitsInMemory
+      [[gnu::vector_size(kCount * sizeof(std::int64_t)), gnu::aligned(alignof(std::int64_t)), gnu::may_alias]] =
+          std::int64_t;
   using InMemory [[gnu::vector_size(kCount * sizeof(double)), gnu::aligned(alignof(double)), gnu::may_alias]] = double;
 
   [[gnu::always_inline]] static void load(const double* from, Doubles& vector) {

@@ -58,13 +58,15 @@ void InteractingMultipleModel::begin(const double* x, const double* P) {
 // Equations (11.6.6-7) to (-10).
 StepStatus InteractingMultipleModel::predict(double dt_s) {
   const ModeMatrix Pi = chain_.over(dt_s);
-  const ModeVector c = Pi.transpose() * probabilities_;
-  ModeMatrix mixing(c.size(), c.size());
-  for (Eigen::Index j = 0; j < c.size(); ++j) {
+  const Eigen::Index r = Pi.rows();
+  ModeVector c = ModeVector::Zero(r);
+  ModeMatrix mixing = Pi;
+  for (Eigen::Index j = 0; j < r; ++j) {
+    for (Eigen::Index i = 0; i < r; ++i) c[j] += mixing(i, j) *= probabilities_[i];
     if (c[j] > 0.0)
-      mixing.col(j) = Pi.col(j).cwiseProduct(probabilities_) / c[j];
+      for (Eigen::Index i = 0; i < r; ++i) mixing(i, j) /= c[j];
     else
-      mixing.col(j) = ModeVector::Unit(c.size(), j);  // a mode that cannot be entered keeps to itself
+      mixing.col(j) = ModeVector::Unit(r, j);  // a mode that cannot be entered keeps to itself
   }
   if (!modes_->mix_and_predict(mixing, dt_s)) return StepStatus::failed;
   predicted_ = probabilities_ = c;
@@ -76,19 +78,23 @@ StepStatus InteractingMultipleModel::predict(double dt_s) {
 StepStatus InteractingMultipleModel::update(const AnyMeasurement& measurement, const StateUpdateTarget& combined) {
   ModeVector log_likelihood;
   modes_->update(measurement, log_likelihood);
-  ModeVector log_weight(log_likelihood.size()), share(log_likelihood.size());
+  ModeVector share = ModeVector::Zero(log_likelihood.size());
+  double largest = -kInfinity, total = 0.0;
   for (Eigen::Index j = 0; j < share.size(); ++j) {
-    log_weight[j] = std::log(predicted_[j]) + log_likelihood[j];
-    share[j] = std::isfinite(log_weight[j]) ? predicted_[j] : 0.0;
+    const bool counts = std::isfinite(log_likelihood[j]) && predicted_[j] > 0.0;
+    if (!counts) continue;
+    total += share[j] = predicted_[j];
+    largest = std::max(largest, log_likelihood[j]);
   }
-  modes_->mix_innovations(share / share.sum(), combined.nu, combined.S);
+  modes_->mix_innovations(share / total, combined.nu, combined.S);
   combined.nis = mahalanobis_squared(combined.S, combined.nu);
   combined.K.setZero(size(), combined.nu.size());
-  const double largest = log_weight.maxCoeff();
   if (!(largest > -kInfinity) || !std::isfinite(combined.nis)) return StepStatus::failed;
   modes_->keep();
-  probabilities_ = (log_weight.array() - largest).exp();
-  probabilities_ /= probabilities_.sum();
+  total = 0.0;
+  for (Eigen::Index j = 0; j < share.size(); ++j)
+    total += probabilities_[j] = share[j] > 0.0 ? share[j] * std::exp(log_likelihood[j] - largest) : 0.0;
+  probabilities_ /= total;
   predicted_ = probabilities_;
   modes_->mix_gains(probabilities_, combined.K);
   out_of_date();

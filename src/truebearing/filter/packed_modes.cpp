@@ -2,12 +2,12 @@
 #include "truebearing/filter/packed_modes.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
+#include <array>
 #include <type_traits>
 #include <utility>
 
 #include "truebearing/core/constants.hpp"
+#include "truebearing/core/covariance.hpp"
 #include "truebearing/core/with_count.hpp"
 #include "truebearing/filter/filter_kinds.hpp"
 #include "truebearing/filter/packed_modes_kernel.hpp"
@@ -35,31 +35,33 @@ class PackedModes final : public ModeBank {
         next_(modes_.size()),
         transitions_(modes_.size()),
         updates_(modes_.size()),
-        verdicts_(modes_.size()),
+        good_(modes_.size()),
         weights_(modes_.size() * motions_.size()) {
-    nonlinear_.reserve(modes_.size() * kLanes);
-    for (const auto& motion : motions_) shells_.push_back(std::make_unique<Shell>(motion));
+    nonlinear_.reserve(modes_.size() * kernels::kBlock);
+    for (const auto& motion : motions_) {
+      shells_.push_back(std::make_unique<Shell>(motion));
+      all_linear_ &= motion->is_linear();
+    }
     const Matrix P = Matrix::Identity();
     begin(State::Zero().eval().data(), P.data(), N);
   }
 
   void begin(const double* x, const double* P, int) override {
     const KalmanFilter<N> filter(matrix_at<N, 1>(x), matrix_at<N, N>(P));
-    for (kernels::ModeBlock<N>& block : modes_)
-      for (int lane = 0; lane < kLanes; ++lane) set(block, lane, filter.x(), filter.P());
+    for (int lane = 0; lane < lanes(); ++lane) set(modes_, lane, filter.x(), filter.P());
   }
 
   bool mix_and_predict(const ModeMatrix& weights, double dt_s) override {
-    for (int from = 0; from < count(); ++from)
-      for (int lane = 0; lane < blocks() * kLanes; ++lane)
-        weights_[static_cast<std::size_t>(from * blocks() + lane / kLanes)].of_mode[lane % kLanes] =
-            weights(from, mode_at(lane));
-    kernels::mix_modes<N>(modes_.data(), count(), weights_.data(), blocks(), next_.data());
+    for (int to = 0; to < lanes(); ++to) {
+      const double* of_all = weights.data() + mode_at(to) * weights.rows();
+      kernels::OfModes* in_block = weights_.data() + to / kernels::kBlock;
+      for (int from = 0; from < count(); ++from) in_block[from * blocks()][to % kernels::kBlock] = of_all[from];
+    }
+    kernels::mix_modes<N>(modes_.data(), count(), weights_.data(), next_.data());
     find_transitions(dt_s);
-    kernels::predict_modes<N>(transitions_.data(), blocks(), next_.data(), verdicts_.data());
+    kernels::predict_modes<N>(transitions_.data(), count(), next_.data(), good_.data());
     for (const Moved& moved : nonlinear_)
-      for (int i = 0; i < N; ++i)
-        next_[static_cast<std::size_t>(moved.lane / kLanes)].x[i][moved.lane % kLanes] = moved.x[i];
+      for (int i = 0; i < N; ++i) block_of(next_, moved.lane).x[i][moved.lane % kernels::kBlock] = moved.x[i];
     for (int lane = 0; lane < count(); ++lane)
       if (!is_valid(lane)) return false;
     modes_.swap(next_);
@@ -82,32 +84,20 @@ class PackedModes final : public ModeBank {
   void mix_innovations(const ModeVector& weights, BoundedVector& nu, BoundedMatrix& S) const override {
     nu.setZero(measured_);
     S.setZero(measured_, measured_);
-    for (int mode = 0; mode < count(); ++mode)
-      if (weights[mode] > 0.0)
-        for (int m = 0; m < measured_; ++m) nu[m] += weights[mode] * update_of(mode).nu[m][mode % kLanes];
-    for (int mode = 0; mode < count(); ++mode) {
-      if (!(weights[mode] > 0.0)) continue;
-      const kernels::UpdateBlock<N>& update = update_of(mode);
-      const int lane = mode % kLanes;
-      for (int col = 0; col < measured_; ++col)
-        for (int row = 0; row < measured_; ++row)
-          S(row, col) += weights[mode] * (update.S[row][col][lane] +
-                                          (update.nu[row][lane] - nu[row]) * (update.nu[col][lane] - nu[col]));
-    }
+    with_measured([&]<int M>(std::integral_constant<int, M>) {
+      kernels::mix_innovations<N, M>(updates_.data(), count(), of_lanes(weights).data(), nu.data(), S.data());
+    });
   }
 
   void mix_gains(const ModeVector& weights, BoundedMatrix& K) const override {
     K.setZero(N, measured_);
-    for (int mode = 0; mode < count(); ++mode)
-      if (weights[mode] > 0.0)
-        for (int m = 0; m < measured_; ++m)
-          for (int i = 0; i < N; ++i) K(i, m) += weights[mode] * update_of(mode).K[i][m][mode % kLanes];
+    with_measured([&]<int M>(std::integral_constant<int, M>) {
+      kernels::mix_gains<N, M>(updates_.data(), count(), of_lanes(weights).data(), K.data());
+    });
   }
 
   void mix(const ModeVector& weights, double* x, double* P) const override {
-    kernels::LaneWeights of_lanes[kMaxModes / kLanes + 1]{};
-    for (int mode = 0; mode < count(); ++mode) of_lanes[mode / kLanes].of_mode[mode % kLanes] = weights[mode];
-    kernels::mix_to_one<N>(modes_.data(), of_lanes, blocks(), x, P);
+    kernels::mix_to_one<N>(modes_.data(), count(), of_lanes(weights).data(), x, P);
   }
 
   void assign(const ModeBank& other) override { modes_ = static_cast<const PackedModes&>(other).modes_; }
@@ -133,24 +123,51 @@ class PackedModes final : public ModeBank {
   };
 
   int count() const { return static_cast<int>(motions_.size()); }
-  int blocks() const { return padded_to_lanes(count()) / kLanes; }
+  int blocks() const { return kernels::blocks_of(count()); }
+  int lanes() const { return blocks() * kernels::kBlock; }
   // Lanes behind the last mode repeat it.
   int mode_at(int lane) const { return std::min(lane, count() - 1); }
-  const kernels::UpdateBlock<N>& update_of(int mode) const { return updates_[static_cast<std::size_t>(mode / kLanes)]; }
+  template <typename Block>
+  static Block& block_of(std::vector<Block>& blocks, int lane) {
+    return blocks[static_cast<std::size_t>(lane / kernels::kBlock)];
+  }
+  template <typename Block>
+  static const Block& block_of(const std::vector<Block>& blocks, int lane) {
+    return blocks[static_cast<std::size_t>(lane / kernels::kBlock)];
+  }
 
-  static void set(kernels::ModeBlock<N>& block, int lane, const State& x, const Matrix& P) {
+  // No weight for lanes that repeat a mode.
+  static std::array<kernels::OfModes, kernels::blocks_of(kMaxModes)> of_lanes(const ModeVector& weights) {
+    std::array<kernels::OfModes, kernels::blocks_of(kMaxModes)> of_lanes{};
+    for (int mode = 0; mode < weights.size(); ++mode)
+      of_lanes[static_cast<std::size_t>(mode / kernels::kBlock)][mode % kernels::kBlock] = weights[mode];
+    return of_lanes;
+  }
+
+  // body(std::integral_constant<int, m>()) of the last measurement, where it was one that can be taken.
+  template <typename Body>
+  void with_measured(const Body& body) const {
+    with_count(measured_, [&]<int M>(std::integral_constant<int, M> m) {
+      if constexpr (M > 0 && M <= most_measurements(N)) body(m);
+    });
+  }
+
+  static void set(Blocks& blocks, int lane, const State& x, const Matrix& P) {
+    kernels::ModeBlock<N>& block = block_of(blocks, lane);
+    const int place = lane % kernels::kBlock;
     for (int i = 0; i < N; ++i) {
-      block.x[i][lane] = x[i];
-      for (int j = 0; j < N; ++j) block.P[i][j][lane] = P(i, j);
+      block.x[i][place] = x[i];
+      for (int j = 0; j < N; ++j) block.P[i][j][place] = P(i, j);
     }
   }
 
   static Estimate at(const Blocks& blocks, int lane) {
-    const kernels::ModeBlock<N>& block = blocks[static_cast<std::size_t>(lane / kLanes)];
+    const kernels::ModeBlock<N>& block = block_of(blocks, lane);
+    const int place = lane % kernels::kBlock;
     Estimate estimate;
     for (int i = 0; i < N; ++i) {
-      estimate.x[i] = block.x[i][lane % kLanes];
-      for (int j = 0; j < N; ++j) estimate.P(i, j) = block.P[i][j][lane % kLanes];
+      estimate.x[i] = block.x[i][place];
+      for (int j = 0; j < N; ++j) estimate.P(i, j) = block.P[i][j][place];
     }
     return estimate;
   }
@@ -158,7 +175,8 @@ class PackedModes final : public ModeBank {
   // F and Q of every lane. Those of linear motions stand as long as dt_s does.
   void find_transitions(double dt_s) {
     nonlinear_.clear();
-    for (int lane = 0; lane < blocks() * kLanes; ++lane) {
+    if (all_linear_ && dt_s == transition_dt_s_) return;
+    for (int lane = 0; lane < lanes(); ++lane) {
       const Motion& motion = *motions_[static_cast<std::size_t>(mode_at(lane))];
       if (motion.is_linear() && dt_s == transition_dt_s_) continue;
       State x = State::Zero();
@@ -167,65 +185,73 @@ class PackedModes final : public ModeBank {
         nonlinear_.push_back({lane, motion.f(x, dt_s)});
       }
       const Matrix F = motion.F(x, dt_s), Q = motion.Q(dt_s);
-      kernels::TransitionBlock<N>& block = transitions_[static_cast<std::size_t>(lane / kLanes)];
+      kernels::TransitionBlock<N>& block = block_of(transitions_, lane);
       for (int i = 0; i < N; ++i)
         for (int j = 0; j < N; ++j) {
-          block.F[i][j][lane % kLanes] = F(i, j);
-          block.Q[i][j][lane % kLanes] = Q(i, j);
+          block.F[i][j][lane % kernels::kBlock] = F(i, j);
+          block.Q[i][j][lane % kernels::kBlock] = Q(i, j);
         }
     }
     transition_dt_s_ = dt_s;
   }
 
   // Of next_: x finite, P positive semi-definite.
-  bool is_valid(int lane) const {
-    const kernels::ModeBlock<N>& block = next_[static_cast<std::size_t>(lane / kLanes)];
-    bool valid = true;
-    for (int i = 0; i < N; ++i) valid &= block.x[i][lane % kLanes] - block.x[i][lane % kLanes] == 0.0;
-    if (!valid || verdicts_[static_cast<std::size_t>(lane / kLanes)].plainly[lane % kLanes]) return valid;
-    return is_positive_semidefinite<N, double>(at(next_, lane).P);
+  bool is_valid(int mode) const {
+    if (block_of(good_, mode)[mode % kernels::kBlock]) [[likely]]
+      return true;
+    const auto [x, P] = at(next_, mode);
+    return is_finite(x) && is_positive_semidefinite<N, double>(P);
   }
 
   template <int M>
   void take(const SizedMeasurement<M>& measurement, ModeVector& log_likelihood) {
     measured_ = M;
-    next_ = modes_;
-    for (int lane = 0; lane < blocks() * kLanes; ++lane) look(measurement, lane);
-    if (measurement.is_position())
-      kernels::update_modes<N, M, true>(measurement.R.data(), blocks(), next_.data(), updates_.data(),
-                                        verdicts_.data());
-    else
-      kernels::update_modes<N, M, false>(measurement.R.data(), blocks(), next_.data(), updates_.data(),
-                                         verdicts_.data());
+    if (measurement.is_position()) {
+      kernels::update_modes<N, M, true>(measurement.z.data(), measurement.R.data(), count(), modes_.data(),
+                                        updates_.data(), next_.data(), good_.data());
+    } else {
+      for (int lane = 0; lane < lanes(); ++lane) look(measurement, lane);
+      kernels::update_modes<N, M, false>(measurement.z.data(), measurement.R.data(), count(), modes_.data(),
+                                         updates_.data(), next_.data(), good_.data());
+    }
     const bool has_R = is_positive_semidefinite<M, double>(measurement.R);
     log_likelihood.resize(count());
+    bool all_valid = true;
     for (int mode = 0; mode < count(); ++mode) {
-      const kernels::UpdateBlock<N>& update = update_of(mode);
-      const int lane = mode % kLanes;
-      const double gained =
-          -0.5 * (update.nis[lane] + std::log(update.determinant[lane]) + M * std::log(2.0 * std::numbers::pi));
-      const bool valid = has_R && update.has_gain[lane] && std::isfinite(gained) && is_valid(mode);
-      log_likelihood[mode] = valid ? gained : -kInfinity;
+      const kernels::UpdateBlock<N>& update = block_of(updates_, mode);
+      const int place = mode % kernels::kBlock;
+      const bool valid = has_R && update.has_gain[place] && is_valid(mode);
+      log_likelihood[mode] = valid ? update.log_likelihood[place] : -kInfinity;
+      all_valid &= valid;
     }
-    for (int lane = 0; lane < blocks() * kLanes; ++lane) {
+    if (all_valid) [[likely]]
+      return;
+    for (int lane = 0; lane < lanes(); ++lane) {
       if (log_likelihood[mode_at(lane)] > -kInfinity) continue;
       const auto [x, P] = at(modes_, lane);  // what failed stays as it was
-      set(next_[static_cast<std::size_t>(lane / kLanes)], lane % kLanes, x, P);
+      set(next_, lane, x, P);
+      forget<M>(lane);
     }
   }
 
-  // The innovation of a lane and, unless a position is measured, its H.
+  // What a lane has no weight for may be no number.
+  template <int M>
+  void forget(int lane) {
+    kernels::UpdateBlock<N>& update = block_of(updates_, lane);
+    const int place = lane % kernels::kBlock;
+    for (int m = 0; m < M; ++m) {
+      update.nu[m][place] = 0.0;
+      for (int l = 0; l < M; ++l) update.S[m][l][place] = 0.0;
+      for (int i = 0; i < N; ++i) update.K[i][m][place] = 0.0;
+    }
+  }
+
+  // The innovation of a lane and its H.
   template <int M>
   void look(const SizedMeasurement<M>& measurement, int lane) {
-    const int block = lane / kLanes, place = lane % kLanes;
-    kernels::UpdateBlock<N>& update = updates_[static_cast<std::size_t>(block)];
-    const kernels::ModeBlock<N>& mode = modes_[static_cast<std::size_t>(block)];
-    if (measurement.is_position()) {
-      for (int m = 0; m < M; ++m) update.nu[m][place] = measurement.z[m] - mode.x[m][place];
-      return;
-    }
-    State x;
-    for (int i = 0; i < N; ++i) x[i] = mode.x[i][place];
+    kernels::UpdateBlock<N>& update = block_of(updates_, lane);
+    const int place = lane % kernels::kBlock;
+    const State x = at(modes_, lane).x;
     const MeasurementOn<N, M> model{measurement};
     const Eigen::Matrix<double, M, 1> nu = model.residual(measurement.z, model.h(x));
     const Eigen::Matrix<double, M, N> H = model.H(x);
@@ -240,10 +266,11 @@ class PackedModes final : public ModeBank {
   Blocks next_;  // what the modes are to become, until all of them have
   std::vector<kernels::TransitionBlock<N>> transitions_;
   double transition_dt_s_ = kNaN;
+  bool all_linear_ = true;
   std::vector<Moved> nonlinear_;  // f(x) of the modes whose motion is
   std::vector<kernels::UpdateBlock<N>> updates_;
-  std::vector<kernels::LaneVerdicts> verdicts_;
-  std::vector<kernels::LaneWeights> weights_;
+  std::vector<kernels::ModeMask> good_;  // of next_
+  std::vector<kernels::OfModes> weights_;
   int measured_ = 1;  // m of the last update
   Modes shells_;      // the modes as filters of their own
 };

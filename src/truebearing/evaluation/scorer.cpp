@@ -5,6 +5,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "truebearing/core/chi_square.hpp"
 #include "truebearing/core/constants.hpp"
 #include "truebearing/core/covariance.hpp"
 #include "truebearing/core/error.hpp"
@@ -61,6 +62,8 @@ Scorer::Scorer(const StateSpace& truth, const StateSpace& estimate) : truth_(&tr
   if (quantities_.empty())
     throw InputError("scoring", "the truth (" + truth.name + ") and a tracker's state (" + estimate.name +
                                     ") have no quantity in common");
+  nees95_ = chi_square_quantile(0.95, all_.size());
+  for (const Places& places : quantities_) quantity_nees95_.push_back(chi_square_quantile(0.95, places.size()));
 }
 
 std::optional<std::size_t> Scorer::quantity(const std::string& name) const {

@@ -28,6 +28,9 @@ class Scorer {
   int dimension() const { return all_.size(); }
   /// The same for one quantity.
   int dimension(std::size_t quantity) const { return quantities_[quantity].size(); }
+  /// What 95 % of the NEES of a consistent tracker stay below; and of those of one quantity.
+  double nees95() const { return nees95_; }
+  double nees95(std::size_t quantity) const { return quantity_nees95_[quantity]; }
 
   /// The 2-norm of truth - estimate in that quantity, in its unit.
   double error(std::size_t quantity, const BoundedVector& truth, const BoundedVector& estimate) const;
@@ -51,6 +54,8 @@ class Scorer {
   std::vector<std::string> quantity_names_;
   std::vector<Places> quantities_;
   std::vector<double> scales_;  // [quantity]: from the unit of the components to its own
+  double nees95_ = 0.0;
+  std::vector<double> quantity_nees95_;
 };
 
 }  // namespace truebearing

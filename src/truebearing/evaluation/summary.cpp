@@ -7,7 +7,6 @@
 #include <span>
 #include <utility>
 
-#include "truebearing/core/chi_square.hpp"
 #include "truebearing/core/constants.hpp"
 
 namespace truebearing {
@@ -57,21 +56,22 @@ const QuantitySummary* TrackerSummary::quantity(const std::string& quantity_name
   return nullptr;
 }
 
-void SummaryTally::QuantityTally::add(const RunScore& run, std::size_t quantity, double quantile) {
+void SummaryTally::QuantityTally::add(const RunScore& run, std::size_t quantity, double nees95) {
   const std::vector<double>& errors = run.error[quantity];
   runs.add(squared_errors(run, quantity));
   steps.resize(std::max(steps.size(), run.steps()));
-  for (std::size_t place = 0; place < errors.size(); ++place) {
-    if (std::isnan(errors[place])) continue;
-    median.add(errors[place]);
-    steps[place % run.steps()].add(errors[place]);
-  }
+  for (std::size_t first = 0; first < errors.size(); first += run.steps())  // of each target
+    for (std::size_t step = 0; step < run.steps(); ++step) {
+      if (std::isnan(errors[first + step])) continue;
+      median.add(errors[first + step]);
+      steps[step].add(errors[first + step]);
+    }
   phases.resize(std::max(phases.size(), static_cast<std::size_t>(phase_count({&run}))));
   for (std::size_t phase = 0; phase < phases.size(); ++phase)
     phases[phase].add(squared_errors_in(run, quantity, static_cast<int>(phase)));
   for (const double nees : run.quantity_nees[quantity]) {
     if (std::isnan(nees)) continue;
-    covered += nees <= quantile ? 1.0 : 0.0;
+    covered += nees <= nees95 ? 1.0 : 0.0;
     count += 1.0;
   }
 }
@@ -80,21 +80,19 @@ SummaryTally::SummaryTally(std::string name, const Scorer& scorer, const Scoring
     : name_(std::move(name)),
       scorer_(scorer),
       rule_(rule),
-      quantities_(scorer.quantities().size(), QuantityTally(kept_apart)),
-      quantile_(chi_square_quantile(0.95, scorer.dimension())) {}
+      quantities_(scorer.quantities().size(), QuantityTally(kept_apart)) {}
 
 void SummaryTally::add_consistency(const RunScore& run) {
   for (const double nees : run.nees) {
     if (std::isnan(nees)) continue;
     nees_sum_ += nees;
-    covered_ += nees <= quantile_ ? 1.0 : 0.0;
+    covered_ += nees <= scorer_.nees95() ? 1.0 : 0.0;
     count_ += 1.0;
   }
 }
 
 void SummaryTally::add(const RunScore& run) {
-  for (std::size_t q = 0; q < quantities_.size(); ++q)
-    quantities_[q].add(run, q, chi_square_quantile(0.95, scorer_.dimension(q)));
+  for (std::size_t q = 0; q < quantities_.size(); ++q) quantities_[q].add(run, q, scorer_.nees95(q));
   add_consistency(run);
   if (!run.error.empty())
     scored_steps_ += std::count_if(run.error[0].begin(), run.error[0].end(), [](double e) { return !std::isnan(e); });

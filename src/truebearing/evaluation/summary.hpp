@@ -56,7 +56,7 @@ class SummaryTally {
  private:
   struct QuantityTally {
     explicit QuantityTally(std::size_t kept_apart) : median(kept_apart) {}
-    void add(const RunScore& run, std::size_t quantity, double quantile);
+    void add(const RunScore& run, std::size_t quantity, double nees95);
     void exchange(TallyStream& stream);
 
     RunErrors runs;
@@ -72,7 +72,6 @@ class SummaryTally {
   const Scorer& scorer_;
   const ScoringRule& rule_;
   std::vector<QuantityTally> quantities_;
-  double quantile_;
   double nees_sum_ = 0.0, covered_ = 0.0, count_ = 0.0, gate_sum_ = 0.0, limited_ = 0.0, lost_ = 0.0, runs_ = 0.0;
   long scored_steps_ = 0;
   long corrected_steps_ = 0;

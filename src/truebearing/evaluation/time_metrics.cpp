@@ -6,7 +6,6 @@
 #include <string>
 #include <utility>
 
-#include "truebearing/core/chi_square.hpp"
 #include "truebearing/evaluation/run_score.hpp"
 #include "truebearing/evaluation/samples.hpp"
 
@@ -38,7 +37,7 @@ class TimeFigures {
       }
     if (const double nees = nees_at(run, time_); std::isfinite(nees)) {
       nees_.add(nees);
-      covered_.add(nees <= quantile_);
+      covered_.add(nees <= scorer_.nees95());
     }
     if (run.time_steps[time_] < 0) return;
     missing_.add(!std::isfinite(error_at(run, 0, time_)));
@@ -89,7 +88,6 @@ class TimeFigures {
   const ScoringRule& rule_;
   const Scorer& scorer_;
   std::size_t time_;
-  double quantile_ = chi_square_quantile(0.95, scorer_.dimension());
   std::vector<Errors> errors_;  // [quantity]
   Samples nees_;
   Share covered_, missing_, lost_;

@@ -125,10 +125,14 @@ struct Registers {
       parts[first / kWidth % (kBlock / kWidth)] += value;
     }
     [[gnu::always_inline]] double sum() const {
-      double lanes[kBlock];
-      for (int part = 0; part < kBlock / kWidth; ++part)
-        for (int lane = 0; lane < kWidth; ++lane) lanes[part * kWidth + lane] = parts[part][lane];
-      return ((lanes[0] + lanes[4]) + (lanes[2] + lanes[6])) + ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7]));
+      typename VectorOf<4>::Doubles four;
+      if constexpr (kWidth == 4) {
+        four = parts[0] + parts[1];
+      } else {
+        const Doubles& all = parts[0];
+        four = __builtin_shufflevector(all, all, 0, 1, 2, 3) + __builtin_shufflevector(all, all, 4, 5, 6, 7);
+      }
+      return (four[0] + four[2]) + (four[1] + four[3]);
     }
   };
 };

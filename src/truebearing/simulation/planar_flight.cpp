@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "truebearing/core/angle.hpp"
 #include "truebearing/core/constants.hpp"
@@ -68,6 +69,29 @@ Eigen::Vector2d direction(double course_rad) {
   return {std::sin(course_rad), std::cos(course_rad)};
 }
 
+/// f of the argument that it had before is not computed again: most of a flight is flown at one rate, much of it on one
+/// course.
+template <typename Function>
+class Remembered {
+ public:
+  explicit Remembered(Function f) : f_(f), value_(f(0.0)) {}
+
+  const auto& operator()(double argument) {
+    if (argument != argument_) value_ = f_(argument_ = argument);
+    return value_;
+  }
+
+ private:
+  Function f_;
+  double argument_ = 0.0;
+  decltype(std::declval<Function>()(0.0)) value_;
+};
+
+/// The chord of an arc of twice that angle, as a share of its length.
+double chord_share(double half_turn_rad) {
+  return std::abs(half_turn_rad) < 1e-8 ? 1.0 : std::sin(half_turn_rad) / half_turn_rad;
+}
+
 }  // namespace
 
 FlownTrack PlanarFlight::fly(std::span<const double> times_s, RandomStream& stream) const {
@@ -84,6 +108,8 @@ FlownTrack PlanarFlight::fly(std::span<const double> times_s, RandomStream& stre
   Programme programme(*this, stream);
   FlownTrack track{Eigen::Matrix4Xd(4, samples), Eigen::VectorXd(samples)};
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
+  Remembered chord(chord_share);
+  Remembered heading(direction);
   for (Eigen::Index k = 0; k < samples; ++k) {
     const double begin_s = times_s[static_cast<std::size_t>(k)];
     track.states.col(k) << position_m, speed * direction(course_rad);
@@ -100,8 +126,7 @@ FlownTrack PlanarFlight::fly(std::span<const double> times_s, RandomStream& stre
                                     : std::clamp(speed + h * rates.acceleration_mps2, std::min(speed, lowest_speed_mps),
                                                  std::max(speed, highest_speed_mps));
       // The chord of an arc points along its middle.
-      const double chord = std::abs(half_turn_rad) < 1e-8 ? 1.0 : std::sin(half_turn_rad) / half_turn_rad;
-      position_m += 0.5 * (speed + next_speed) * h * chord * direction(course_rad + half_turn_rad);
+      position_m += 0.5 * (speed + next_speed) * h * chord(half_turn_rad) * heading(course_rad + half_turn_rad);
       course_rad += 2.0 * half_turn_rad;
       speed = next_speed;
     }

@@ -58,6 +58,20 @@ void MedianOf::add(double value) {
   }
 }
 
+void MedianOf::add(std::span<const double> values) {
+  const auto is_number = [](double value) { return !std::isnan(value); };
+  if (!bins_.empty() || values_.size() + values.size() > kept_apart_) {
+    for (const double value : values)
+      if (is_number(value)) add(value);
+    return;
+  }
+  const std::size_t before = values_.size();
+  values_.resize(before + values.size());
+  const auto first = values_.begin() + static_cast<std::ptrdiff_t>(before);
+  values_.erase(std::copy_if(values.begin(), values.end(), first, is_number), values_.end());
+  count_ += values_.size() - before;
+}
+
 // Keeps the half of them that is about the middle of all. Runs that are like those so far move the middle by less the
 // more there were.
 void MedianOf::narrow() {
@@ -107,16 +121,15 @@ void MedianOf::begin_bins() {
 }
 
 void MedianOf::exchange(TallyStream& stream) {
-  const bool as_bins = stream.whole(stream.compact() ? 1 : 0) != 0 || stream.compact();
   if (stream.writes()) {
+    const bool as_bins = stream.compact() || !bins_.empty();  // of which values_ are the middle at best
+    stream.whole(as_bins ? 1 : 0);
     if (as_bins) return write_bins(stream);
-    stream.length(values_.size());
-    for (const double value : values_) stream.value(value);
+    stream.write(values_);
     return;
   }
-  if (as_bins) return add_bins(stream);
-  const std::size_t count = stream.length(0);
-  for (std::size_t i = 0; i < count; ++i) add(stream.value(0.0));
+  if (stream.whole(0) != 0) return add_bins(stream);
+  add(stream.read());
 }
 
 // Which bins hold anything, each as its distance from the one before, and how much.

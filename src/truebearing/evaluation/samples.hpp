@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "truebearing/core/constants.hpp"
@@ -49,6 +50,7 @@ class MedianOf {
  public:
   explicit MedianOf(std::size_t kept_apart = kMostRunsApart) : kept_apart_(kept_apart) {}
   void add(double value);
+  void add(std::span<const double> values);  ///< those of them that are numbers
   double value() const;
   void exchange(TallyStream& stream);
 

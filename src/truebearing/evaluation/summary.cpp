@@ -60,11 +60,10 @@ void SummaryTally::QuantityTally::add(const RunScore& run, std::size_t quantity,
   const std::vector<double>& errors = run.error[quantity];
   runs.add(squared_errors(run, quantity));
   steps.resize(std::max(steps.size(), run.steps()));
+  median.add(errors);
   for (std::size_t first = 0; first < errors.size(); first += run.steps())  // of each target
     for (std::size_t step = 0; step < run.steps(); ++step) {
-      if (std::isnan(errors[first + step])) continue;
-      median.add(errors[first + step]);
-      steps[step].add(errors[first + step]);
+      if (!std::isnan(errors[first + step])) steps[step].add(errors[first + step]);
     }
   phases.resize(std::max(phases.size(), static_cast<std::size_t>(phase_count({&run}))));
   for (std::size_t phase = 0; phase < phases.size(); ++phase)

@@ -2,6 +2,7 @@
 #include "truebearing/evaluation/tally_stream.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 #include "truebearing/core/error.hpp"
 
@@ -44,6 +45,28 @@ std::size_t TallyStream::length(std::size_t length) {
   const std::uint64_t read = get();
   if (read > left_.size()) refuse("is cut short");
   return static_cast<std::size_t>(read);
+}
+
+void TallyStream::write(std::span<const double> values) {
+  put(values.size());
+  if constexpr (std::endian::native == std::endian::little) {
+    bytes_.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
+  } else {
+    for (const double value : values) put(std::bit_cast<std::uint64_t>(value));
+  }
+}
+
+std::vector<double> TallyStream::read() {
+  const std::uint64_t count = get();
+  if (count > left_.size() / sizeof(double)) refuse("is cut short");
+  std::vector<double> values(static_cast<std::size_t>(count));
+  if constexpr (std::endian::native == std::endian::little) {
+    if (!values.empty()) std::memcpy(values.data(), left_.data(), values.size() * sizeof(double));
+    left_.remove_prefix(values.size() * sizeof(double));
+  } else {
+    for (double& value : values) value = get_value();
+  }
+  return values;
 }
 
 std::uint64_t TallyStream::small(std::uint64_t value) {

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -44,6 +45,10 @@ class TallyStream {
   /// Writes the length and gives it back, or reads one. Items take a byte or more each.
   std::size_t length(std::size_t length);
   std::uint64_t whole(std::uint64_t value) { return writes_ ? (put(value), 0) : get(); }
+
+  /// A list of values that is written or read as one.
+  void write(std::span<const double> values);
+  std::vector<double> read();
 
   /// The same of one that is mostly small: seven bits in a byte.
   std::uint64_t small(std::uint64_t value);

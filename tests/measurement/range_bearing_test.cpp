@@ -55,6 +55,28 @@ TEST(RangeBearing, WholeTurnsChangeNothing) {
   }
 }
 
+TEST(RangeBearing, SeesManyStatesAsItSeesEach) {
+  const RangeBearing<> model{{100.0, -200.0}, 10.0, 0.1};
+  RandomStream random({23, Role::evaluation, 0}, StreamId::test);
+  Eigen::Matrix<double, 4, kMostPoints> X;
+  for (int i = 0; i < kMostPoints; ++i)
+    X.col(i) << 1e3 * random.normal(), 1e3 * random.normal(), random.normal(), random.normal();
+  X.col(3).head<2>() = model.site_m;
+  X.col(4).head<2>() = model.site_m + Eigen::Vector2d(1e-3, -5e3);
+  X.col(5).head<2>() = model.site_m + Eigen::Vector2d(-1e-3, -5e3);
+  for (const int count : {1, 8, 9, kMostPoints})
+    for (const double bearing_rad : {-3.14, -1.0, 0.0, 2.0, 3.14}) {
+      const Eigen::Vector2d z_0(1500.0, bearing_rad);
+      Eigen::Matrix<double, 2, kMostPoints> residuals;
+      model.residuals_of(X.data(), 4, count, z_0, residuals.data());
+      for (int i = 0; i < count; ++i) {
+        const Eigen::Vector2d expected = model.residual(model.h(X.col(i)), z_0);
+        EXPECT_EQ(residuals(0, i), expected(0));
+        EXPECT_NEAR(residuals(1, i), expected(1), 1e-15) << "point " << i << " from " << bearing_rad;
+      }
+    }
+}
+
 TEST(ConvertRangeBearing, IsTheMatrixOfThePaper) {
   const double range_m = 900.0, bearing_rad = 2.1, sigma_m = 40.0, sigma_rad = 0.2;
   const double s = sigma_rad * sigma_rad, lambda = std::exp(-s / 2), lambda_2 = std::exp(-2 * s);

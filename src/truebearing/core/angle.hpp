@@ -19,7 +19,7 @@ constexpr double degrees(double angle_rad) {
 
 /// The same direction in [-pi, pi].
 inline double wrap_pi(double angle_rad) {
-  return std::remainder(angle_rad, 2.0 * kPi);
+  return std::fabs(angle_rad) <= kPi ? angle_rad : std::remainder(angle_rad, 2.0 * kPi);
 }
 
 }  // namespace truebearing

@@ -54,6 +54,8 @@ class SizedMeasurement : public AnyMeasurement {
   /// H of a model without a modified gain.
   virtual void modified_gain(const double* x, double* g) const = 0;
   virtual Vector residual(const Vector& a, const Vector& b) const = 0;
+  /// residual(h(x_i), z_0) of many states (m x count, by columns), x_i at X + i stride.
+  virtual void residuals_of(const double* X, int stride, int count, const Vector& z_0, double* residuals) const = 0;
 
  protected:
   explicit SizedMeasurement(bool is_position)
@@ -95,6 +97,13 @@ class ErasedMeasurement final : public SizedMeasurement<Model::kMeasurements> {
       filled = model_->H(state(x));
   }
   Vector residual(const Vector& a, const Vector& b) const override { return model_->residual(a, b); }
+  void residuals_of(const double* X, int stride, int count, const Vector& z_0, double* residuals) const override {
+    if constexpr (requires { model_->residuals_of(X, stride, count, z_0, residuals); })
+      model_->residuals_of(X, stride, count, z_0, residuals);
+    else
+      for (int i = 0; i < count; ++i)
+        Eigen::Map<Vector>(residuals + i * M) = model_->residual(model_->h(state(X + i * stride)), z_0);
+  }
 
   const Model& model() const { return *model_; }
 
@@ -132,6 +141,9 @@ struct MeasurementOn {
   }
   const Covariance& R() const { return measurement.R; }
   Vector residual(const Vector& a, const Vector& b) const { return measurement.residual(a, b); }
+  void residuals_of(const double* X, int stride, int count, const Vector& z_0, double* residuals) const {
+    measurement.residuals_of(X, stride, count, z_0, residuals);
+  }
 };
 
 /// use(measurement) with its length known.

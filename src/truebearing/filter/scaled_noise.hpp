@@ -26,6 +26,9 @@ class ScaledMeasurement final : public SizedMeasurement<M> {
   Vector h(const double* x) const override { return measurement_.h(x); }
   void H(const double* x, double* jacobian) const override { measurement_.H(x, jacobian); }
   void modified_gain(const double* x, double* g) const override { measurement_.modified_gain(x, g); }
+  void residuals_of(const double* X, int stride, int count, const Vector& z_0, double* residuals) const override {
+    measurement_.residuals_of(X, stride, count, z_0, residuals);
+  }
   Vector residual(const Vector& a, const Vector& b) const override { return measurement_.residual(a, b); }
 
  private:

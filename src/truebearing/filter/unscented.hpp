@@ -106,8 +106,11 @@ class UnscentedKalmanFilter {
     Points<M> d;
     fill(d, Scalar(0));
     const PointStates X = points(offsets);
-    for (int i = 1; i < kPoints; ++i)
-      put(Vector(model.residual(Vector(model.h(X[static_cast<std::size_t>(i)])), z_0)), d, 0, i);
+    if constexpr (requires { model.residuals_of(X[1].data(), N, kPoints - 1, z_0, d.data()); })
+      model.residuals_of(X[1].data(), N, kPoints - 1, z_0, d.data() + M);
+    else
+      for (int i = 1; i < kPoints; ++i)
+        put(Vector(model.residual(Vector(model.h(X[static_cast<std::size_t>(i)])), z_0)), d, 0, i);
     const Vector shift = take_mean<M>(d);
     update.nu = model.residual(z, plus(z_0, shift));
     take_update<M>(offsets, d, model.R(), update);

@@ -6,9 +6,11 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <type_traits>
 
 #include "truebearing/core/angle.hpp"
 #include "truebearing/measurement/measurement_model.hpp"
+#include "truebearing/measurement/range_bearing_points.hpp"
 
 namespace truebearing {
 
@@ -54,6 +56,12 @@ struct RangeBearing {
   /// The bearing's component in [-pi, pi].
   Vector residual(const Vector& z, const Vector& z_pred) const {
     return Vector(z(0) - z_pred(0), static_cast<Scalar>(wrap_pi(z(1) - z_pred(1))));
+  }
+
+  /// residual(h(x_i), z_0) of many states (2 x count, by columns), x_i at X + i stride.
+  void residuals_of(const double* X, int stride, int count, const Vector& z_0,
+                    double* residuals) const requires std::is_same_v<Scalar, double> {
+    range_bearing_residuals(X, stride, count, site_m.data(), z_0.data(), residuals);
   }
 };
 

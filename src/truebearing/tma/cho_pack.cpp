@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "truebearing/core/simd_width.hpp"
-#include "truebearing/tma/arctangent.hpp"
+#include "truebearing/core/arctangent.hpp"
 
 namespace truebearing {
 namespace {

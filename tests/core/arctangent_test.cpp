@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "truebearing/tma/arctangent.hpp"
+#include "truebearing/core/arctangent.hpp"
 
 #include <gtest/gtest.h>
 

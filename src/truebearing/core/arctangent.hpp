@@ -4,7 +4,8 @@
 #pragma once
 
 #include <cmath>
-#include <numbers>
+
+#include "truebearing/core/angle.hpp"
 
 namespace truebearing {
 namespace detail {
@@ -35,7 +36,6 @@ template <typename Many>
 template <typename Real>
 [[gnu::always_inline]] inline void arctangent(const Real& sine, const Real& cosine, Real& angle) {
   constexpr double kTangentOf22_5 = 0.41421356237309503;
-  constexpr double kPi = std::numbers::pi;
   // atan(x) / x as a polynomial in x^2 for |x| <= tan(pi / 8): interpolation at Chebyshev nodes, error under 6e-17.
   constexpr double kCoefficients[] = {-0x1.23b93fac21dacp-6, 0x1.3702ea64c11f2p-5,  -0x1.9c79c07a989c6p-5,
                                       0x1.def9ecd6a20f2p-5,  -0x1.10ea1d157f6ffp-4, 0x1.3b10f0f5b1224p-4,

@@ -5,14 +5,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "truebearing/array/angle_likelihood_kernels.hpp"
-#include "truebearing/array/column_product.hpp"
 #include "truebearing/core/angle.hpp"
 
 namespace truebearing {
 namespace {
-
-static_assert(kernels::kMostSignals == kMaxSignals);
 
 // Twice the log likelihood that a signal adds, with Ns snapshots: a' R^-1 R_hat R^-1 a is `found`, a' R^-1 a
 // `expected`, R without the signal.
@@ -44,73 +40,94 @@ void steer_real(const RealArray& array, double angle_rad, double* a, double* d) 
 }
 
 void AngleLikelihood::resize(const RealArray& array, int N) {
-  for (Eigen::MatrixXd* columns : {&A_, &D_, &W_, &V_, &RW_})
-    if (columns->rows() != array.padded) columns->resize(array.padded, kMaxSignals);
-  for (SignalMatrix* gram : {&AA_, &DA_, &DD_, &C_}) gram->resize(N, N);
+  const int lanes = kernels::signal_lanes(N), M = array.rows();
+  for (Eigen::MatrixXd* rows : {&A_, &D_, &W_, &V_, &RW_})
+    if (rows->size() < lanes * M) rows->resize(kernels::signal_lanes(kMaxSignals), M);
+  for (LaneMatrix* matrix : {&AA_, &DA_, &DD_, &C_, &Et_, &aRa_, &dRa_, &dRd_, &angles_, &angle_power_, &powers_})
+    matrix->resize(lanes, N);
+  for (LaneVector* vector : {&theta_, &p_, &found_a_, &found_d_, &explained_}) vector->resize(lanes);
 }
 
 // Steering vectors, their Gram matrices and C.
 bool AngleLikelihood::prepare_block(const RealArray& array, const RealCovariance& block, const SignalVector& m,
                                     const SignalVector* rate, double middle_s, double noise_power) {
-  const int N = static_cast<int>(m.size()) / 2;
+  const int N = static_cast<int>(m.size()) / 2, lanes = kernels::signal_lanes(N), M = array.rows();
   resize(array, N);
+  theta_.setZero();
+  p_.setOnes();
   for (int n = 0; n < N; ++n) {
-    const double moved = rate ? (block.time_s - middle_s) * (*rate)[n] : 0.0;
-    steer_real(array, m[n] + moved, A_.col(n).data(), D_.col(n).data());
+    theta_[n] = m[n] + (rate ? (block.time_s - middle_s) * (*rate)[n] : 0.0);
+    p_[n] = std::exp(m[N + n]);
   }
-  kernels::grams({array.padded, N, A_.data(), D_.data(), AA_.data(), DA_.data(), DD_.data()});
-  SignalMatrix L(N, N);
-  SignalVector p = m.tail(N).array().exp();
+  kernels::steer_signals({N, lanes, array.pairs, array.middle, 2.0 * kPi * array.spacing_wavelengths, array.live.data(),
+                          theta_.data(), A_.data(), D_.data()});
   bool is_positive_definite = false;
-  kernels::coupling({N, noise_power, AA_.data(), p.data(), L.data(), C_.data(), &log_det_, &is_positive_definite});
+  kernels::couple({N, lanes, M, noise_power, A_.data(), D_.data(), p_.data(), AA_.data(), DA_.data(), DD_.data(),
+                   C_.data(), &log_det_, &is_positive_definite});
   return is_positive_definite;
 }
 
 bool AngleLikelihood::evaluate(const RealInterval& interval, const SignalVector& m, const SignalVector* rate,
                                double middle_s, double noise_power) {
-  const int N = static_cast<int>(m.size()) / 2, rows = interval.array().padded;
+  const int N = static_cast<int>(m.size()) / 2, lanes = kernels::signal_lanes(N);
   log_likelihood_ = 0.0;
   gradient_.setZero(2 * N);
-  J_.setZero(2 * N, 2 * N);
   presence_.setZero(N);
+  resize(interval.array(), N);
+  for (LaneMatrix* information : {&angles_, &angle_power_, &powers_}) information->setZero();
   SignalVector expected = SignalVector::Zero(N), found = SignalVector::Zero(N);
   double residual = 0.0;
-  SignalMatrix K(N, N), E(N, N), aRa(N, N), dRa(N, N), dRd(N, N);
-  SignalVector p(N), W_RW(N), V_RW(N), A_RW(N);
-  for (int n = 0; n < N; ++n) p[n] = std::exp(m[N + n]);
   const double inverse_noise = 1.0 / noise_power;
 
   for (int b = 0; b < interval.count(); ++b) {
     const RealCovariance& block = interval.block(b);
     if (!prepare_block(interval.array(), block, m, rate, middle_s, noise_power)) return false;
     const double Ns = block.snapshots;
-    kernels::inner({N, inverse_noise, AA_.data(), DA_.data(), DD_.data(), C_.data(), p.data(), K.data(), E.data(),
-                    aRa.data(), dRa.data(), dRd.data()});
-    kernels::products({rows, N, A_.data(), D_.data(), block.R.data(), K.data(), E.data(), inverse_noise, W_.data(),
-                       V_.data(), RW_.data(), W_RW.data(), V_RW.data(), A_RW.data()});
+    kernels::score_signals({N,
+                            lanes,
+                            interval.array().rows(),
+                            inverse_noise,
+                            A_.data(),
+                            D_.data(),
+                            block.R.data(),
+                            interval.array().padded,
+                            AA_.data(),
+                            DA_.data(),
+                            DD_.data(),
+                            C_.data(),
+                            p_.data(),
+                            W_.data(),
+                            V_.data(),
+                            RW_.data(),
+                            Et_.data(),
+                            aRa_.data(),
+                            dRa_.data(),
+                            dRd_.data(),
+                            found_a_.data(),
+                            found_d_.data(),
+                            explained_.data()});
+    kernels::add_information({N, lanes, Ns, p_.data(), aRa_.data(), dRa_.data(), dRd_.data(), angles_.data(),
+                              angle_power_.data(), powers_.data()});
 
     double explained = 0.0, log_p = 0.0;
     for (int i = 0; i < N; ++i) {
-      const double found_a = W_RW[i], found_d = V_RW[i];  // a' R^-1 R_hat R^-1 a and d' R^-1 R_hat R^-1 a
-      explained += p[i] * A_RW[i];
+      const double p = p_[i], aRa = aRa_(i, i);
+      explained += p * explained_[i];
       log_p += m[N + i];
-      gradient_[i] += 2.0 * Ns * p[i] * (found_d - dRa(i, i));
-      gradient_[N + i] += Ns * p[i] * (found_a - aRa(i, i));
-      const double without = 1.0 - p[i] * aRa(i, i);  // R without signal i, by the same identity
-      expected[i] += Ns * aRa(i, i) / without;
-      found[i] += Ns * found_a / (without * without);
+      gradient_[i] += 2.0 * Ns * p * (found_d_[i] - dRa_(i, i));
+      gradient_[N + i] += Ns * p * (found_a_[i] - aRa);
+      const double without = 1.0 - p * aRa;  // R without signal i, by the same identity
+      expected[i] += Ns * aRa / without;
+      found[i] += Ns * found_a_[i] / (without * without);
     }
     residual += Ns * (block.trace - explained);
     log_likelihood_ -= Ns * ((interval.array().live_rows - N) * std::log(noise_power) + log_det_ + log_p +
                              (block.trace - explained) * inverse_noise);
-    for (int j = 0; j < N; ++j)
-      for (int i = 0; i < N; ++i) {
-        const double pp = Ns * p[i] * p[j];
-        J_(i, j) += 2.0 * pp * (dRa(i, j) * dRa(j, i) + dRd(i, j) * aRa(i, j));
-        J_(i, N + j) += 2.0 * pp * dRa(i, j) * aRa(i, j);
-        J_(N + i, N + j) += pp * aRa(i, j) * aRa(i, j);
-      }
   }
+  J_.resize(2 * N, 2 * N);
+  J_.topLeftCorner(N, N) = angles_.topRows(N);
+  J_.topRightCorner(N, N) = angle_power_.topRows(N);
+  J_.bottomRightCorner(N, N) = powers_.topRows(N);
   J_.bottomLeftCorner(N, N) = J_.topRightCorner(N, N).transpose();
   for (int i = 0; i < N; ++i) presence_[i] = presence_of(interval.snapshots(), expected[i], found[i]);
   // E[sigma^2 tr(R^-1 R_hat)] is N sigma^2 + (M - N) times the true noise power.
@@ -121,28 +138,31 @@ bool AngleLikelihood::evaluate(const RealInterval& interval, const SignalVector&
 AngleLikelihood::Newcomer AngleLikelihood::search(const RealInterval& interval, const SignalVector& m,
                                                   const SignalVector* rate, double middle_s, double noise_power,
                                                   std::span<const double> grid_rad) {
-  const int N = static_cast<int>(m.size()) / 2, rows = interval.array().padded;
+  const int N = static_cast<int>(m.size()) / 2, M = interval.array().rows(), padded = interval.array().padded;
   found_.assign(grid_rad.size(), 0.0);
   expected_.assign(grid_rad.size(), 0.0);
+  if (a_.size() != padded)
+    for (Eigen::VectorXd* vector : {&a_, &d_, &w_, &Rw_}) vector->resize(padded);
   for (int b = 0; b < interval.count(); ++b) {
     const RealCovariance& block = interval.block(b);
     if (!prepare_block(interval.array(), block, m, rate, middle_s, noise_power)) return {};
-    auto a = V_.col(0), d = V_.col(1), w = W_.col(0), Rw = RW_.col(0);
     for (std::size_t g = 0; g < grid_rad.size(); ++g) {
-      steer_real(interval.array(), grid_rad[g], a.data(), d.data());
-      SignalVector projected(N);
-      for (int n = 0; n < N; ++n) projected[n] = A_.col(n).dot(a);
-      w = a;  // R^-1 a = (a - A C A'a) / sigma^2
-      for (int i = 0; i < N; ++i) {
-        double coordinate = 0.0;
-        for (int k = 0; k < N; ++k) coordinate += C_(i, k) * projected[k];
-        w -= A_.col(i) * coordinate;
-      }
-      w /= noise_power;
-      Rw.setZero();
-      for (int i = 0; i < rows; ++i) Rw += block.R.col(i) * w[i];
-      expected_[g] += block.snapshots * a.dot(w);
-      found_[g] += block.snapshots * w.dot(Rw);
+      steer_real(interval.array(), grid_rad[g], a_.data(), d_.data());
+      SignalVector projected = SignalVector::Zero(N);
+      const double* A_i = A_.data();  // what sensor i hears of the signals
+      for (int i = 0; i < M; ++i, A_i += theta_.size())
+        for (int n = 0; n < N; ++n) projected[n] += A_i[n] * a_[i];
+      SignalVector coordinates = SignalVector::Zero(N);
+      for (int k = 0; k < N; ++k) coordinates += C_.col(k).head(N) * projected[k];
+      A_i = A_.data();
+      w_ = a_;  // R^-1 a = (a - A C A'a) / sigma^2
+      for (int i = 0; i < M; ++i, A_i += theta_.size())
+        for (int n = 0; n < N; ++n) w_[i] -= A_i[n] * coordinates[n];
+      w_ /= noise_power;
+      Rw_.setZero();
+      for (int i = 0; i < M; ++i) Rw_ += block.R.col(i) * w_[i];
+      expected_[g] += block.snapshots * a_.dot(w_);
+      found_[g] += block.snapshots * w_.dot(Rw_);
     }
   }
   Newcomer best;

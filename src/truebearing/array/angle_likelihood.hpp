@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "truebearing/array/angle_likelihood_kernels.hpp"
 #include "truebearing/array/real_covariance.hpp"
 
 namespace truebearing {
@@ -54,6 +55,10 @@ class AngleLikelihood {
                   double noise_power, std::span<const double> grid_rad);
 
  private:
+  using LaneVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kernels::signal_lanes(kMaxSignals), 1>;
+  using LaneMatrix =
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kernels::signal_lanes(kMaxSignals), kMaxSignals>;
+
   bool prepare_block(const RealArray& array, const RealCovariance& block, const SignalVector& m,
                      const SignalVector* rate, double middle_s, double noise_power);
   void resize(const RealArray& array, int N);
@@ -63,12 +68,17 @@ class AngleLikelihood {
   SignalMatrix J_;
   SignalVector presence_;
   double residual_power_ = 0.0;
-  // Of the block at hand.
-  Eigen::MatrixXd A_, D_, W_, V_, RW_;    // a, d, R^-1 a, R^-1 d, R_hat R^-1 a as columns (padded x N)
-  SignalMatrix AA_, DA_, DD_;             // A'A, D'A, D'D (N x N)
-  SignalMatrix C_;                        // (sigma^2 P^-1 + A'A)^-1 (N x N)
-  double log_det_ = 0.0;                  // of sigma^2 P^-1 + A'A
-  std::vector<double> found_, expected_;  // over the grid of a search
+  // Signals are lanes (angle_likelihood_kernels.hpp). Of the block at hand:
+  Eigen::MatrixXd A_, D_, W_, V_, RW_;        // a, d, R^-1 a, R^-1 d, R_hat R^-1 a as rows (lanes x M)
+  LaneVector theta_, p_;                      // angles and powers (lanes)
+  LaneMatrix AA_, DA_, DD_;                   // A'A, D'A, D'D (lanes x N)
+  LaneMatrix C_;                              // (sigma^2 P^-1 + A'A)^-1 (lanes x N)
+  double log_det_ = 0.0;                      // of sigma^2 P^-1 + A'A
+  LaneMatrix Et_, aRa_, dRa_, dRd_;           // D'A C, A' R^-1 A, D' R^-1 A, D' R^-1 D (lanes x N)
+  LaneVector found_a_, found_d_, explained_;  // a' R^-1 R_hat R^-1 a, d' R^-1 R_hat R^-1 a, a' R_hat R^-1 a (lanes)
+  LaneMatrix angles_, angle_power_, powers_;  // J(theta, theta), J(theta, l), J(l, l) (lanes x N)
+  Eigen::VectorXd a_, d_, w_, Rw_;            // of an angle of a search: a, d, R^-1 a, R_hat R^-1 a (padded M)
+  std::vector<double> found_, expected_;      // over the grid of a search
 };
 
 /// The real steering vector a at that angle and its derivative d, (padded) each.

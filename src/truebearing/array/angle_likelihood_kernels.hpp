@@ -1,48 +1,70 @@
 // SPDX-License-Identifier: Apache-2.0
 // The loops of the stochastic likelihood (angle_likelihood.hpp, whose letters these are), in SIMD instructions where
-// the processor has them. Matrices are column-major without gaps; `rows` is padded to whole lanes (simd_lanes.hpp).
+// the processor has them. Signals are lanes: no sum goes across a register, and what is computed for one signal is
+// computed for all of them at once.
+//     (M x N)  row by row, `lanes` numbers each: a row holds what one sensor hears of the N signals
+//     (N x N)  column by column, `lanes` numbers each
+//     (N)      `lanes` numbers
+// Behind the N of `lanes` numbers stands anything finite.
 #pragma once
 
 namespace truebearing::kernels {
 
-/// The Gram matrices of the columns of A and D (rows x N); N x N each.
-struct Grams {
-  int rows, N;
-  const double *A, *D;
-  double *AA, *DA, *DD;
-};
-void grams(const Grams& g);
+/// What one row takes: whole registers of any processor.
+constexpr int signal_lanes(int N) {
+  return (N + 7) / 8 * 8;
+}
 
-/// C = (sigma^2 P^-1 + A'A)^-1 (N x N) and log det of its inverse. False where that is not positive definite.
+/// The real steering vectors of N angles and their derivatives (real_covariance.hpp).
+struct Steering {
+  int N, lanes;
+  int pairs;
+  bool middle;
+  double wave;          ///< 2 pi d / lambda
+  const double* live;   ///< (M)
+  const double* theta;  ///< (N)
+  double *A, *D;        ///< (M x N)
+};
+void steer_signals(const Steering& s);
+
+/// A'A, D'A, D'D, and C = (sigma^2 P^-1 + A'A)^-1 with log det of its inverse; false where that is not positive
+/// definite.
 struct Coupling {
-  int N;
+  int N, lanes, M;
   double noise;
-  const double *AA, *p;
-  double *L, *C;  ///< N x N each, the first for what is between
+  const double *A, *D;  ///< (M x N)
+  const double* p;      ///< (N)
+  double *AA, *DA, *DD, *C;
   double* log_det;
   bool* is_positive_definite;
 };
-void coupling(const Coupling& s);
+void couple(const Coupling& s);
 
-/// W = A K,  V = (D - A E) / sigma^2,  RW = R_hat W, and the inner products of the columns of W, V and A with those of
-/// RW (N each).
-struct Products {
-  int rows, N;
-  const double *A, *D, *R, *K, *E;
+/// R^-1 A = A C P^-1 and R^-1 D = (D - A E) / sigma^2, E = C A'D, and all that the scores need of them:
+///     aRa = A' R^-1 A,  dRa = D' R^-1 A,  dRd = D' R^-1 D  (N x N)
+///     found_a, found_d, explained: of every signal a' R^-1 R_hat R^-1 a, d' R^-1 R_hat R^-1 a, a' R_hat R^-1 a (N)
+struct Scores {
+  int N, lanes, M;
   double inverse_noise;
-  double *W, *V, *RW;
-  double *W_RW, *V_RW, *A_RW;
-};
-void products(const Products& p);
-
-/// All of N x N: K = C P^-1 and E = C A'D, with which R^-1 A = A K and R^-1 D = (D - A E) / sigma^2, and of those
-/// aRa = A' R^-1 A,  dRa = D' R^-1 A,  dRd = D' R^-1 D.
-struct Inner {
-  int N;
-  double inverse_noise;
+  const double *A, *D;  // (M x N)
+  const double* R;      // R_hat (M x M), columns `R_stride` apart
+  int R_stride;
   const double *AA, *DA, *DD, *C, *p;
-  double *K, *E, *aRa, *dRa, *dRd;
+  double *W, *V, *RW;  // R^-1 A, R^-1 D, R_hat R^-1 A (M x N)
+  double* Et;          // E' (N x N)
+  double *aRa, *dRa, *dRd;
+  double *found_a, *found_d, *explained;
 };
-void inner(const Inner& s);
+void score_signals(const Scores& s);
+
+/// Adds a block of Ns snapshots to the information: 2 Ns pp [dRa dRa' + dRd aRa], 2 Ns pp dRa aRa, Ns pp aRa^2, products
+/// taken element by element, pp = p p' (N x N each).
+struct Information {
+  int N, lanes;
+  double Ns;
+  const double *p, *aRa, *dRa, *dRd;
+  double *angles, *angle_power, *powers;
+};
+void add_information(const Information& s);
 
 }  // namespace truebearing::kernels

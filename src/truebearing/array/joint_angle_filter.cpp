@@ -10,9 +10,9 @@
 namespace truebearing {
 namespace {
 
-// Of B = L L'.
-double log_determinant(const SignalMatrix& L) {
-  return 2.0 * L.diagonal().array().log().sum();
+// Of B = K D^-1 K', D the diagonal of K.
+double log_determinant(const SignalMatrix& K) {
+  return K.diagonal().array().log().sum();
 }
 
 constexpr double kLargestAngle_rad = 1.55;  // short of end-fire, where angles are no coordinates
@@ -126,11 +126,10 @@ bool JointAngleUpdate::run(const JointAngleState& prior, const RealInterval& int
   }
   const SignalVector m0 = prior.x.head(n), rate = prior.x.tail(N);
   Ut_ = prior.P.leftCols(n);
+  Lt_.resize(n, n);
   bool is_positive_definite = false;
-  kernels::prior_root(N, Ut_.data(), is_positive_definite);
+  kernels::prior_root(N, Ut_.data(), Lt_.data(), is_positive_definite);
   if (!is_positive_definite) return false;
-  for (int j = 1; j < n; ++j) Ut_.col(j).head(j).setZero();
-  Lt_ = Ut_.topRows(n).transpose();
   m_ = start;
   u_ = m_ - m0;  // u = L^-1 (m - m0)
   for (int j = 0; j < n; ++j) {

@@ -24,6 +24,8 @@ struct RealArray {
   Eigen::VectorXd live;  ///< (padded): 1 for rows that are used, 0 for those of dead sensors and the padding
   int live_rows = 0;
 
+  /// Rows but the padding.
+  int rows() const { return 2 * pairs + (middle ? 1 : 0); }
   /// Distance of pair i from the middle, in spacings.
   double position(int i) const { return middle ? i + 1.0 : i + 0.5; }
 };

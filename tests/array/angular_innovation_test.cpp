@@ -6,6 +6,7 @@
 #include <Eigen/QR>
 
 #include "tests/support/array_scene.hpp"
+#include "truebearing/array/implicit_innovations.hpp"
 #include "truebearing/array/projection_approximation.hpp"
 #include "truebearing/array/sample_covariance.hpp"
 #include "truebearing/simulation/scenario.hpp"
@@ -18,10 +19,10 @@ using testing::scene_of;
 constexpr double kAgreement_rad = radians(1e-9);
 
 struct Innovations {
-  AngularInnovation<double> ryu, projection, implicit;
+  AngularInnovation<double> ryu, projection, implicit, together;
 };
 
-// Of targets predicted at these angles, each by all three.
+// Of targets predicted at these angles, each by all three, and together by the last.
 std::vector<Innovations> innovations(const LineArray& array, const SplitMatrix<double>& W,
                                      const std::vector<double>& angles_rad) {
   SplitMatrix<double> a, b;
@@ -35,7 +36,10 @@ std::vector<Innovations> innovations(const LineArray& array, const SplitMatrix<d
   implicit.prepare(W);
   std::vector<Innovations> all;
   for (Eigen::Index n = 0; n < a.cols(); ++n) array.steer(angles_rad[static_cast<std::size_t>(n)], n, a, b);
-  for (Eigen::Index n = 0; n < a.cols(); ++n) all.push_back({ryu(a, b, n), projection(a, b, n), implicit(a, b, n)});
+  ImplicitInnovations together;
+  together.find(array, std::vector<double>(static_cast<std::size_t>(array.sensors), 1.0), angles_rad, W);
+  for (Eigen::Index n = 0; n < a.cols(); ++n)
+    all.push_back({ryu(a, b, n), projection(a, b, n), implicit(a, b, n), together[static_cast<std::size_t>(n)]});
   return all;
 }
 
@@ -44,6 +48,8 @@ void expect_agreement(const Innovations& of, const std::string& where) {
   EXPECT_NEAR(of.implicit.angle_rad, of.ryu.angle_rad, kAgreement_rad) << where;
   EXPECT_NEAR(of.projection.curvature, of.ryu.curvature, 1e-9 * of.ryu.curvature) << where;
   EXPECT_NEAR(of.implicit.curvature, of.ryu.curvature, 1e-9 * of.ryu.curvature) << where;
+  EXPECT_NEAR(of.together.angle_rad, of.ryu.angle_rad, kAgreement_rad) << where;
+  EXPECT_NEAR(of.together.curvature, of.ryu.curvature, 1e-9 * of.ryu.curvature) << where;
 }
 
 Eigen::MatrixXcd random_matrix(RandomStream& random, Eigen::Index rows, Eigen::Index columns) {
@@ -70,6 +76,36 @@ TEST(AngularInnovation, ThreeWaysAgreeOnRandomSubspaces) {
     for (int n = 0; n < N; ++n) angles.push_back(random.uniform(-1.2, 1.2));
     for (const Innovations& of : innovations({M, 0.5}, W, angles))
       expect_agreement(of, std::to_string(M) + " sensors, " + std::to_string(N) + " targets");
+  }
+}
+
+// In registers of every filling, of sensors that are alive or not, whatever was found before.
+TEST(AngularInnovation, OfAllTargetsAtOnceIsThatOfEach) {
+  RandomStream random({4, Role::evaluation, 0}, StreamId::test);
+  ImplicitInnovations together;
+  ImplicitInnovation<double> alone;
+  for (const int N : {12, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}) {
+    const int M = 2 * N + 3 + static_cast<int>(random.index(20));
+    const LineArray array{M, random.uniform(0.2, 1.5)};
+    std::vector<double> live(static_cast<std::size_t>(M), 1.0), angles;
+    live[random.index(static_cast<std::size_t>(M))] = 0.0;
+    for (int n = 0; n < N; ++n) angles.push_back(random.uniform(-1.2, 1.2));
+    const SplitMatrix<double> W = testing::split(random_matrix(random, M, N));
+    SplitMatrix<double> a, b;
+    a.setZero(M, N);
+    b = a;
+    for (int n = 0; n < N; ++n) array.steer(angles[static_cast<std::size_t>(n)], n, a, b);
+    const Eigen::Map<const Eigen::VectorXd> alive(live.data(), M);
+    for (Eigen::MatrixXd* part : {&a.re, &a.im, &b.re, &b.im}) *part = (alive.asDiagonal() * *part).eval();
+    together.find(array, live, angles, W);
+    alone.prepare(W);
+    for (std::size_t n = 0; n < angles.size(); ++n) {
+      const AngularInnovation<double> expected = alone(a, b, static_cast<Eigen::Index>(n));
+      const double b2 = detail::real_product(b, static_cast<Eigen::Index>(n), b, static_cast<Eigen::Index>(n));
+      EXPECT_NEAR(together[n].angle_rad, expected.angle_rad, 1e-11 * std::abs(expected.angle_rad) + 1e-14) << N;
+      EXPECT_NEAR(together[n].curvature, expected.curvature, 1e-12 * b2) << N;
+      EXPECT_NEAR(together.derivative_norm2(n), b2, 1e-12 * b2) << N;
+    }
   }
 }
 

@@ -39,7 +39,7 @@ void expect_holds(const Interval& interval, const ArrayScene& scene, const Snaps
   for (int t = 0; t < interval.snapshots(); ++t) {
     const int number = numbers[static_cast<std::size_t>(t)];
     EXPECT_EQ(interval.number(t), number) << what;
-    for (int m = 0; m < padded_to_lanes(scene.sensors); ++m) {
+    for (int m = 0; m < padded_to_widest(scene.sensors); ++m) {
       const bool is_heard = m < scene.sensors && interval.live()[static_cast<std::size_t>(m)] == 1.0;
       const std::complex<double> value = is_heard ? values[place(scene, number, m)] : 0.0;
       EXPECT_EQ(interval.re(t)[m], value.real()) << what << ": sensor " << m << ", snapshot " << t;
@@ -48,10 +48,10 @@ void expect_holds(const Interval& interval, const ArrayScene& scene, const Snaps
   }
 }
 
-TEST(Interval, KeepsAWholeBlockAndPadsItsSensorsToFour) {
-  EXPECT_EQ(padded_to_lanes(1), 4);
-  EXPECT_EQ(padded_to_lanes(8), 8);
-  EXPECT_EQ(padded_to_lanes(9), 12);
+TEST(Interval, KeepsAWholeBlockAndPadsItsSensorsToEight) {
+  EXPECT_EQ(padded_to_widest(1), 8);
+  EXPECT_EQ(padded_to_widest(8), 8);
+  EXPECT_EQ(padded_to_widest(9), 16);
   ArrayScene scene = noise(5, 4);
   scene.spacing_wavelengths = 0.47;
   const Snapshots values = draw(scene);

@@ -76,7 +76,7 @@ TEST(ProjectionApproximation, EqualsPastInPlainComplexNumbers) {
       EXPECT_LT((testing::joined(past.basis(), sensors) - plain.W).cwiseAbs().maxCoeff(), 1e-10) << k;
     }
     const Eigen::Index padding = past.basis().rows() - sensors;
-    EXPECT_EQ(past.basis().rows() % 4, 0);
+    EXPECT_EQ(past.basis().rows() % 8, 0);
     EXPECT_TRUE(past.basis().re.bottomRows(padding).isZero(0.0) && past.basis().im.bottomRows(padding).isZero(0.0));
   }
 }

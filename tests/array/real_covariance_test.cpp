@@ -6,6 +6,7 @@
 #include "tests/support/array_scene.hpp"
 #include "truebearing/array/angle_likelihood.hpp"
 #include "truebearing/array/sample_covariance.hpp"
+#include "truebearing/core/simd_lanes.hpp"
 
 namespace truebearing::real_covariance_test {
 namespace {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "truebearing/array/angle_likelihood_kernels.hpp"
 #include "truebearing/core/angle.hpp"
 
 namespace truebearing {
@@ -40,9 +41,9 @@ void steer_real(const RealArray& array, double angle_rad, double* a, double* d) 
 }
 
 void AngleLikelihood::resize(const RealArray& array, int N) {
-  const int lanes = kernels::signal_lanes(N), M = array.rows();
+  const int lanes = padded_to_widest(N), M = array.rows();
   for (Eigen::MatrixXd* rows : {&A_, &D_, &W_, &V_, &RW_})
-    if (rows->size() < lanes * M) rows->resize(kernels::signal_lanes(kMaxSignals), M);
+    if (rows->size() < lanes * M) rows->resize(padded_to_widest(kMaxSignals), M);
   for (LaneMatrix* matrix : {&AA_, &DA_, &DD_, &C_, &Et_, &aRa_, &dRa_, &dRd_, &angles_, &angle_power_, &powers_})
     matrix->resize(lanes, N);
   for (LaneVector* vector : {&theta_, &p_, &found_a_, &found_d_, &explained_}) vector->resize(lanes);
@@ -51,7 +52,7 @@ void AngleLikelihood::resize(const RealArray& array, int N) {
 // Steering vectors, their Gram matrices and C.
 bool AngleLikelihood::prepare_block(const RealArray& array, const RealCovariance& block, const SignalVector& m,
                                     const SignalVector* rate, double middle_s, double noise_power) {
-  const int N = static_cast<int>(m.size()) / 2, lanes = kernels::signal_lanes(N), M = array.rows();
+  const int N = static_cast<int>(m.size()) / 2, lanes = padded_to_widest(N), M = array.rows();
   resize(array, N);
   theta_.setZero();
   p_.setOnes();
@@ -69,7 +70,7 @@ bool AngleLikelihood::prepare_block(const RealArray& array, const RealCovariance
 
 bool AngleLikelihood::evaluate(const RealInterval& interval, const SignalVector& m, const SignalVector* rate,
                                double middle_s, double noise_power) {
-  const int N = static_cast<int>(m.size()) / 2, lanes = kernels::signal_lanes(N);
+  const int N = static_cast<int>(m.size()) / 2, lanes = padded_to_widest(N);
   log_likelihood_ = 0.0;
   gradient_.setZero(2 * N);
   presence_.setZero(N);

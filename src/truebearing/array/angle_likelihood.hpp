@@ -14,8 +14,8 @@
 #include <span>
 #include <vector>
 
-#include "truebearing/array/angle_likelihood_kernels.hpp"
 #include "truebearing/array/real_covariance.hpp"
+#include "truebearing/core/simd_width.hpp"
 
 namespace truebearing {
 
@@ -55,9 +55,9 @@ class AngleLikelihood {
                   double noise_power, std::span<const double> grid_rad);
 
  private:
-  using LaneVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kernels::signal_lanes(kMaxSignals), 1>;
+  using LaneVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, padded_to_widest(kMaxSignals), 1>;
   using LaneMatrix =
-      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kernels::signal_lanes(kMaxSignals), kMaxSignals>;
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, padded_to_widest(kMaxSignals), kMaxSignals>;
 
   bool prepare_block(const RealArray& array, const RealCovariance& block, const SignalVector& m,
                      const SignalVector* rate, double middle_s, double noise_power);

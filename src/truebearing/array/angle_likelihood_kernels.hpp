@@ -5,15 +5,10 @@
 //     (M x N)  row by row, `lanes` numbers each: a row holds what one sensor hears of the N signals
 //     (N x N)  column by column, `lanes` numbers each
 //     (N)      `lanes` numbers
-// Behind the N of `lanes` numbers stands anything finite.
+// `lanes` is N, padded to whole registers (core/simd_width.hpp); behind the N numbers stands anything finite.
 #pragma once
 
 namespace truebearing::kernels {
-
-/// What one row takes: whole registers of any processor.
-constexpr int signal_lanes(int N) {
-  return (N + 7) / 8 * 8;
-}
 
 /// The real steering vectors of N angles and their derivatives (real_covariance.hpp).
 struct Steering {

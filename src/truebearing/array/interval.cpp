@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+
+#include "truebearing/array/snapshot_kernel.hpp"
 
 namespace truebearing {
 namespace {
@@ -20,34 +23,25 @@ void Interval::take(const SnapshotBlock& block) {
   spacing_wavelengths_ = block.spacing_wavelengths;
   interval_s_ = block.interval_s;
   if (!is_as_before || re_.cols() < block_snapshots_) {
-    re_.setZero(padded_to_lanes(sensors_), block_snapshots_);
-    im_.setZero(padded_to_lanes(sensors_), block_snapshots_);
-    live_.assign(static_cast<std::size_t>(sensors_), 1.0);
+    re_.setZero(padded_to_widest(sensors_), block_snapshots_);
+    im_.setZero(padded_to_widest(sensors_), block_snapshots_);
+    live_.resize(static_cast<std::size_t>(sensors_));
+    sensor_sums_.resize(sensors_, 3);
     numbers_.reserve(static_cast<std::size_t>(block_snapshots_));
   }
-  std::fill(live_.begin(), live_.end(), 0.0);
-  double sum_re = 0.0, sum_im = 0.0, power = 0.0;
-  for (int t = 0; t < block_snapshots_; ++t) {
-    const std::complex<double>* x = block.snapshot(t).data();
-    double *re = re_.col(t).data(), *im = im_.col(t).data();
-    for (int m = 0; m < sensors_; ++m) {
-      re[m] = x[m].real();
-      im[m] = x[m].imag();
-      const double size = re[m] * re[m] + im[m] * im[m];
-      live_[static_cast<std::size_t>(m)] += size;
-      sum_re += re[m];
-      sum_im += im[m];
-      power += size;
-    }
-  }
-  sums_ << sum_re, sum_im, power;
-  numbers_.clear();
+  auto sum_re = sensor_sums_.col(0), sum_im = sensor_sums_.col(1), power = sensor_sums_.col(2);
+  // Complex numbers may be read as pairs of real ones.
+  kernels::part({sensors_, block_snapshots_, reinterpret_cast<const double*>(block.values.data()),
+                 static_cast<int>(re_.rows()), re_.data(), im_.data(), sum_re.data(), sum_im.data(), power.data()});
+  sums_ << sum_re.sum(), sum_im.sum(), power.sum();
   live_count_ = sensors_;
-  if (std::isfinite(power) && std::all_of(live_.begin(), live_.end(), [](double size) { return size > 0.0; })) {
+  if (std::isfinite(sums_[2]) && (power.array() > 0.0).all()) {
     std::fill(live_.begin(), live_.end(), 1.0);
-    for (int t = 0; t < block_snapshots_; ++t) numbers_.push_back(t);
+    numbers_.resize(static_cast<std::size_t>(block_snapshots_));
+    std::iota(numbers_.begin(), numbers_.end(), 0);
     return;
   }
+  numbers_.clear();
   take_part(block);
 }
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // What an estimator can use of one interval's snapshots. A sensor that gives zeros or NaN throughout is dead and left
 // out; of what is left, a snapshot with a value that is not finite is dropped. Real and imaginary parts are kept apart,
-// snapshot by snapshot, padded with zeros to whole lanes (simd_lanes.hpp).
+// snapshot by snapshot, padded with zeros to whole registers (simd_width.hpp).
 #pragma once
 
 #include <Eigen/Core>
 #include <complex>
 #include <vector>
 
-#include "truebearing/core/simd_lanes.hpp"
+#include "truebearing/core/simd_width.hpp"
 #include "truebearing/measurement/snapshot_block.hpp"
 
 namespace truebearing {
@@ -46,7 +46,8 @@ class Interval {
   double spacing_wavelengths_ = 0.5, interval_s_ = 1.0;
   std::vector<double> live_;
   std::vector<int> numbers_;
-  Eigen::MatrixXd re_, im_;  // (padded M x Ns)
+  Eigen::MatrixXd re_, im_;                               // (padded M x Ns)
+  Eigen::Matrix<double, Eigen::Dynamic, 3> sensor_sums_;  // of real parts, imaginary parts and powers (M)
   Eigen::Vector3d sums_ = Eigen::Vector3d::Zero();
 };
 

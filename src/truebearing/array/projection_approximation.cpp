@@ -5,11 +5,11 @@
 
 namespace truebearing {
 void ProjectionApproximation::begin(const Eigen::MatrixXcd& basis) {
-  const Eigen::Index M = basis.rows(), padded = padded_to_lanes(static_cast<int>(M)), N = basis.cols();
+  const Eigen::Index M = basis.rows(), padded = padded_to_widest(static_cast<int>(M)), N = basis.cols();
   W_.setZero(padded, N);
   W_.re.topRows(M) = basis.real();
   W_.im.topRows(M) = basis.imag();
-  const Eigen::Index padded_columns = padded_to_lanes(static_cast<int>(N));
+  const Eigen::Index padded_columns = padded_to_widest(static_cast<int>(N));
   P_.re.setIdentity(padded_columns, N);
   P_.im.setZero(padded_columns, N);
   work_.setZero(padded_columns, 6);

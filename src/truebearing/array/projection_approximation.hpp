@@ -22,7 +22,7 @@ class ProjectionApproximation {
   /// Takes the usable snapshots of an interval, of as many sensors. No allocation.
   void update(const Interval& interval);
 
-  /// W. Its rows are padded with zeros to whole lanes (simd_lanes.hpp).
+  /// W. Its rows are padded with zeros to whole registers (simd_width.hpp).
   const SplitMatrix<double>& basis() const { return W_; }
 
  private:

@@ -28,6 +28,13 @@ struct VectorOf {
   }
 };
 
+/// The least multiple of the widest register's doubles that holds so many: what is padded to it can be loaded without a
+/// rest on any processor.
+constexpr int padded_to_widest(int count) {
+  constexpr int kWidest = 8;
+  return (count + kWidest - 1) / kWidest * kWidest;
+}
+
 }  // namespace truebearing
 
 #if defined(__x86_64__) && defined(__GNUC__)

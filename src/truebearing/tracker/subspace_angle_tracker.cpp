@@ -164,27 +164,40 @@ void SubspaceAngleTracker::follow_subspace() {
   signal_power_ = std::max(signals / N - noise_power_, 0.05 * noise_power_);
 }
 
-void SubspaceAngleTracker::prepare_innovation() {
-  switch (options_.innovation) {
-    case SubspaceAngleOptions::Innovation::ryu:
-      return ryu_.prepare(basis());
-    case SubspaceAngleOptions::Innovation::projection:
-      return projection_.prepare(basis());
-    case SubspaceAngleOptions::Innovation::implicit:
-      return implicit_.prepare(basis());
+// Step 3 for every target, equation (13).
+void SubspaceAngleTracker::find_innovations(const LineArray& array, double lag_s) {
+  const std::size_t N = predicted_.size();
+  expected_rad_.resize(N);
+  found_.resize(N);
+  const LaggedAngle model{lag_s, 1.0};
+  for (std::size_t n = 0; n < N; ++n)
+    expected_rad_[n] = std::clamp(model.h(predicted_[n].x())[0], -kLargestAngle_rad, kLargestAngle_rad);
+  if (options_.innovation == SubspaceAngleOptions::Innovation::implicit) {
+    implicit_.find(array, interval_.live(), expected_rad_, basis());
+    for (std::size_t n = 0; n < N; ++n) found_[n] = {implicit_[n], implicit_.derivative_norm2(n)};
+    return;
   }
-}
-
-AngularInnovation<double> SubspaceAngleTracker::innovation(Eigen::Index n) {
-  switch (options_.innovation) {
-    case SubspaceAngleOptions::Innovation::ryu:
-      return ryu_(a_, b_, n);
-    case SubspaceAngleOptions::Innovation::projection:
-      return projection_(a_, b_, n);
-    case SubspaceAngleOptions::Innovation::implicit:
-      break;
+  const Eigen::Index columns = static_cast<Eigen::Index>(N);
+  if (a_.rows() != basis().rows() || a_.cols() != columns) {
+    a_.setZero(basis().rows(), columns);
+    b_.setZero(basis().rows(), columns);
   }
-  return implicit_(a_, b_, n);
+  for (Eigen::Index n = 0; n < columns; ++n) array.steer(expected_rad_[static_cast<std::size_t>(n)], n, a_, b_);
+  for (int m = 0; m < array.sensors; ++m)
+    if (interval_.live()[static_cast<std::size_t>(m)] == 0.0)
+      for (SplitMatrix<double>* matrix : {&a_, &b_}) {
+        matrix->re.row(m).setZero();
+        matrix->im.row(m).setZero();
+      }
+  const auto find = [&](auto& innovation) {
+    innovation.prepare(basis());
+    for (Eigen::Index n = 0; n < columns; ++n)
+      found_[static_cast<std::size_t>(n)] = {innovation(a_, b_, n), detail::real_product(b_, n, b_, n)};
+  };
+  if (options_.innovation == SubspaceAngleOptions::Innovation::ryu)
+    find(ryu_);
+  else
+    find(projection_);
 }
 
 double SubspaceAngleTracker::variance(std::size_t n, double curvature) const {
@@ -227,11 +240,7 @@ std::span<const StepRecord> SubspaceAngleTracker::publish(const Measurement& mea
     record.gain.reset();
   }
   if (usable) {
-    prepare_innovation();
-    if (a_.rows() != basis().rows() || a_.cols() != static_cast<Eigen::Index>(N)) {
-      a_.setZero(basis().rows(), static_cast<Eigen::Index>(N));
-      b_.setZero(basis().rows(), static_cast<Eigen::Index>(N));
-    }
+    find_innovations(array, lag_s);
     used_time_s_ = measurement.time_s;
   }
   for (std::size_t n = 0; n < N; ++n) {
@@ -239,14 +248,8 @@ std::span<const StepRecord> SubspaceAngleTracker::publish(const Measurement& mea
     Filter updated = predicted_[n];
     if (usable) {
       LaggedAngle model{lag_s, 1.0};
-      const auto column = static_cast<Eigen::Index>(n);
-      const double angle_rad = std::clamp(model.h(updated.x())[0], -kLargestAngle_rad, kLargestAngle_rad);
-      array.steer(angle_rad, column, a_, b_);
-      for (int m = 0; m < array.sensors; ++m)
-        if (interval_.live()[static_cast<std::size_t>(m)] == 0.0)
-          for (SplitMatrix<double>* matrix : {&a_, &b_}) matrix->re(m, column) = matrix->im(m, column) = 0.0;
-      const AngularInnovation<double> found = innovation(column);  // step 3, equation (13)
-      const double b2 = b_.re.col(column).squaredNorm() + b_.im.col(column).squaredNorm();
+      const double angle_rad = expected_rad_[n];
+      const auto& [found, b2] = found_[n];
       record.status = StepStatus::failed;
       if (std::isfinite(found.angle_rad) && found.curvature > kLeastCurvature * b2) {
         model.variance_rad2 = variance(n, found.curvature);

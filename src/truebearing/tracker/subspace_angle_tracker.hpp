@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "truebearing/array/angular_innovation.hpp"
+#include "truebearing/array/implicit_innovations.hpp"
 #include "truebearing/array/interval.hpp"
 #include "truebearing/array/orthogonal_iteration.hpp"
 #include "truebearing/array/projection_approximation.hpp"
@@ -77,8 +78,7 @@ class SubspaceAngleTracker final : public Tracker {
   bool begin(double time_s);
   void follow_subspace();
   const SplitMatrix<double>& basis() const;
-  void prepare_innovation();
-  AngularInnovation<double> innovation(Eigen::Index n);
+  void find_innovations(const LineArray& array, double lag_s);
   double variance(std::size_t n, double curvature) const;
   std::span<const StepRecord> publish(const Measurement& measurement, double dt_s, bool usable);
 
@@ -99,8 +99,14 @@ class SubspaceAngleTracker final : public Tracker {
   double signal_power_ = 1.0, noise_power_ = 1.0;  // means along the basis and off it
   RyuInnovation<double> ryu_;
   ProjectionInnovation<double> projection_;
-  ImplicitInnovation<double> implicit_;
-  SplitMatrix<double> a_, b_;  // steering vectors at the predicted angles, and their derivatives
+  ImplicitInnovations implicit_;
+  SplitMatrix<double> a_, b_;  // steering vectors at the predicted angles, and their derivatives; not for implicit_
+  struct Found {
+    AngularInnovation<double> innovation;
+    double b2;  // |b|^2
+  };
+  std::vector<double> expected_rad_;  // of each target the angle that the subspace should tell
+  std::vector<Found> found_;
   std::vector<StepRecord> records_;
 };
 

@@ -98,6 +98,28 @@ TEST(MedianOf, IsWithinABinWhereTheMiddleWandersAway) {
   EXPECT_NEAR(narrowed.value(), median_of(values), median_of(values) / 4096.0);
 }
 
+// As a block of runs has it, whose errors were more than are kept one by one.
+TEST(MedianOf, GivesABlockAllThatItHasTaken) {
+  std::vector<double> values = normals(10000);
+  for (double& value : values) value = std::abs(value);
+  std::vector<double> with_others = values;
+  with_others.resize(values.size() + 3000, 1e6);
+  const double median = median_of(with_others);
+  for (const std::size_t kept_apart : {1000u, 20000u}) {
+    for (const bool compact : {false, true}) {
+      MedianOf block(kept_apart), all;
+      for (int k = 0; k < 3000; ++k) all.add(1e6);
+      for (const double value : values) block.add(value);
+      TallyStream written(compact);
+      block.exchange(written);
+      TallyStream read(written.written());
+      all.exchange(read);
+      read.finish();
+      EXPECT_NEAR(all.value(), median, median / 4096.0) << kept_apart << " kept apart, compact " << compact;
+    }
+  }
+}
+
 TEST(MedianOf, TakesAnyValueInABin) {
   MedianOf binned(0);
   for (const double value : {0.0, 1e-300, 1e300, 7.0, 7.0, 7.0, HUGE_VAL}) binned.add(value);

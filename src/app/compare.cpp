@@ -92,7 +92,7 @@ void add_compare(const Subcommands& all) {
   const Subcommand command = all.add("compare", "run the study's trackers on held-out runs and compare their errors");
   add_study(command, arguments->study);
   command.argument("--seed", arguments->seed, "seed; the study's own where not given");
-  command.argument("--runs", options.runs, "runs; the study's own number where not given").within(1, 1000000000);
+  command.argument("--runs", options.runs, "runs; the study's own number where not given").within(1, kMostRuns);
   command.argument("--threads", options.threads, "0: one per core").within(0, 1024);
   command.argument("--truth", options.truth,
                    "a recorded track (log with truth, or positions), measured afresh in every run; or a line array's "

@@ -99,7 +99,7 @@ void add_learn(const Subcommands& all) {
                    "folder for parameters and models; where the study names them if not given");
   command.argument("--seed", arguments->seed, "seed; the study's own where not given");
   command.argument("--runs", options.runs, "runs that are compared; the study's own number where not given")
-      .within(1, 10000000);
+      .within(1, kMostRuns);
   command.argument("--threads", options.threads, "0: one per core").within(0, 1024);
   command.argument("--json", options.json, "write the results as JSON");
   add_report_arguments(command, options.report);

@@ -22,7 +22,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMostShards = 1000000;
-constexpr std::size_t kMostRuns = 1000000000;  // as --runs has it
 constexpr std::size_t kMostInput = std::size_t{1} << 30;
 
 std::optional<std::size_t> number_of(const std::string& text) {

@@ -15,6 +15,9 @@
 
 namespace truebearing {
 
+/// Of a set. What would break beyond it stands in docs/scale.md.
+inline constexpr std::size_t kMostRuns = 1000000000;
+
 /// Runs of a block of a set that has so many: 1 for few, 16 for thousands, and so many that a set has no more than 4096
 /// blocks. Those of more than 16 come compact.
 std::size_t runs_of_block(std::size_t runs);

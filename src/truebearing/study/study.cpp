@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <toml++/toml.h>
 
+#include "truebearing/evaluation/comparison_runs.hpp"
 #include "truebearing/io/file.hpp"
 #include "truebearing/study/configuration_text.hpp"
 #include "truebearing/study/published_rows.hpp"
@@ -67,7 +68,7 @@ void Study::read(const StudyFile& file) {
         throw sets->error(set, "has another truth than the study's scenario");
     }
   seed_ = static_cast<std::uint64_t>(reader.integer_or("seed", 1, 0, std::numeric_limits<std::int64_t>::max()));
-  runs_ = static_cast<std::size_t>(reader.integer_or("runs", 1000, 1, 10000000));
+  runs_ = static_cast<std::size_t>(reader.integer_or("runs", 1000, 1, kMostRuns));
   if (reader.has("parameters")) {
     parameters_path_ = reader.resolve(reader.text("parameters"));
     if (std::filesystem::exists(parameters_path_)) parameters_ = read_parameters_file(parameters_path_);

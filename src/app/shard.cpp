@@ -46,6 +46,14 @@ Json header_json(const ShardHeader& header) {
           {"details", header.details}};
 }
 
+std::string header_line(const ShardHeader& header) {
+  try {
+    return header_json(header).dump() + "\n";
+  } catch (const Json::type_error&) {
+    throw InputError(header.study, "is a path in no UTF-8, which a shard's header is", "a folder of another name");
+  }
+}
+
 std::ifstream opened(const std::string& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw InputError(file, "cannot be read", "a file that compare --shard wrote");
@@ -128,7 +136,7 @@ std::string hash_of_inputs(const Study& study) {
 void write_shard(StudyComparison& comparison, const ShardHeader& header, const std::string& output, bool quiet) {
   const std::size_t blocks = comparison.runs().blocks();
   OutputStream file(output);
-  file.write(header_json(header).dump() + "\n");
+  file.write(header_line(header));
   {
     ProgressLine progress(fmt::format("shard {}/{}", header.shard.index, header.shard.count), quiet);
     run_blocks(comparison.runs(), BlockRange{header.shard.first(blocks), header.shard.last(blocks)},

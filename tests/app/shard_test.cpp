@@ -55,6 +55,18 @@ TEST(Shards, MergeToTheResultsOfOneProcessByteForByte) {
   }
 }
 
+TEST(Shards, OfAStudyWhosePathIsNoTextAreRefused) {
+  const TemporaryFolder folder;
+  write_study(folder, tuned_study());
+  const Outcome outcome = run(folder, "compare \"$here/small.toml\" --shard 1/2 --json part1.json",
+                              "here=$(printf 'K\\344se'); mkdir \"$here\"; cp *.toml \"$here\";");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_TRUE(is_one_line(outcome.err)) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("K\\xe4se/small.toml: is a path in no UTF-8, which a shard's header is; valid: "
+                                     "a folder of another name"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "part1.json"));
+}
+
 TEST(Shards, OfWhatDoesNotBelongTogetherAreRefused) {
   const TemporaryFolder folder;
   write_study(folder, tuned_study());

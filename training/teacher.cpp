@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <fmt/format.h>
 #include <limits>
 #include <optional>
@@ -29,6 +30,17 @@ using Rows = std::vector<double>;
 
 Eigen::Index row_size(Eigen::Index features, Eigen::Index state) {
   return features + 2 * state + 2 * state * state + 3 + 3 + state;
+}
+
+// As machines of one kind have them.
+std::string bytes_of(const Rows& rows) {
+  return {reinterpret_cast<const char*>(rows.data()), rows.size() * sizeof(double)};
+}
+
+Rows rows_of(const std::string& bytes) {
+  Rows rows(bytes.size() / sizeof(double));
+  std::memcpy(rows.data(), bytes.data(), rows.size() * sizeof(double));
+  return rows;
 }
 
 void append(const auto& values, Rows& rows) {
@@ -211,15 +223,21 @@ TeacherSet collect_teacher_set(const Ensemble& ensemble, const CorrectionSpec& c
   const std::size_t runs = correction.training.runs;
   std::vector<Rows> by_run(runs);
   std::vector<std::optional<RowMaker>> makers(worker_count(options.threads));
-  monte_carlo(
-      runs, options.threads,
-      [&](std::size_t run, std::size_t worker) {
-        if (!makers[worker])
-          makers[worker].emplace(ensemble, correction, truth_space, truth_index, options.whole_tracks);
-        const RunKey key{options.seed, options.role, run};
-        by_run[run] = makers[worker]->rows(scenario.simulate(key), key);
-      },
-      options.progress);
+  const auto make = [&](std::size_t run, std::size_t worker) {
+    if (!makers[worker]) makers[worker].emplace(ensemble, correction, truth_space, truth_index, options.whole_tracks);
+    const RunKey key{options.seed, options.role, run};
+    return makers[worker]->rows(scenario.simulate(key), key);
+  };
+  if (options.ranks)
+    share_work(
+        *options.ranks, runs, options.threads,
+        [&](std::size_t run, std::size_t worker) { return bytes_of(make(run, worker)); },
+        [&](std::size_t run, const std::string& bytes) { by_run[run] = rows_of(bytes); }, options.progress);
+  else
+    monte_carlo(
+        runs, options.threads, [&](std::size_t run, std::size_t worker) { by_run[run] = make(run, worker); },
+        options.progress);
+  if (!is_first(options.ranks)) return {};
 
   const Eigen::Index d = static_cast<Eigen::Index>(correction.design.features.size());
   const Eigen::Index n = space.size();

@@ -9,6 +9,7 @@
 #include "truebearing/core/random.hpp"
 #include "truebearing/correction/feature.hpp"
 #include "truebearing/evaluation/monte_carlo.hpp"
+#include "truebearing/evaluation/ranks.hpp"
 #include "truebearing/simulation/scenario.hpp"
 #include "truebearing/study/correction_spec.hpp"
 #include "truebearing/tracker/ensemble.hpp"
@@ -57,6 +58,7 @@ struct TeacherOptions {
   Progress progress;
   /// Every row that the network is asked at, one track behind the other, for networks that remember.
   bool whole_tracks = false;
+  Ranks* ranks = nullptr;  ///< share the runs; the first has the set, the others none of it
 };
 
 /// Runs `ensemble`, which has the members that `correction` names, over correction.training.runs runs of the scenario.

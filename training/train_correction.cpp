@@ -16,6 +16,7 @@
 #include "training/recurrent_checkpoint.hpp"
 #include "training/recurrent_training.hpp"
 #include "training/variable_projection.hpp"
+#include "truebearing/correction/model_file.hpp"
 #include "truebearing/study/configuration_text.hpp"
 
 namespace truebearing {
@@ -269,6 +270,17 @@ TeacherSet taught_rows(const TeacherSet& teacher) {
           teacher.unsure.size() > 0 ? of(teacher.unsure) : teacher.unsure};
 }
 
+// As its files have it, which hold all of it.
+void give_to_all(Ranks& ranks, const CorrectionModel& model) {
+  from_first(ranks, model_text(model));
+  from_first(ranks, weights_text(model));
+}
+
+CorrectionModel model_of_first(Ranks& ranks) {
+  const std::string text = from_first(ranks, {}), weights = from_first(ranks, {});
+  return parse_model(text, weights, "the model of rank 0");
+}
+
 }  // namespace
 
 CorrectionModel train_correction(const Study& study, const std::string& name, const TrainOptions& options,
@@ -279,8 +291,9 @@ CorrectionModel train_correction(const Study& study, const std::string& name, co
   const Ensemble ensemble = study.make_ensemble(members);
   const StateSpace& space = ensemble.tracker(ensemble.index(spec.design.base)).space();
   const bool recurrent = spec.design.network == NetworkKind::recurrent;
-  if (recurrent) recurrent_module(options.torch_folder);  // said before the work where there is none
-  TeacherOptions teacher_options{options.seed, Role::training, options.threads, options.teacher_progress, recurrent};
+  if (recurrent && is_first(options.ranks)) recurrent_module(options.torch_folder);  // said before the work if none
+  TeacherOptions teacher_options{options.seed, Role::training, options.threads, options.teacher_progress,
+                                 recurrent,    options.ranks};
   const std::unique_ptr<Scenario> taught = spec.training.scenario ? study.scenario(*spec.training.scenario) : nullptr;
   const Scenario& scenario = taught ? *taught : study.scenario();
   const TeacherSet teacher = collect_teacher_set(ensemble, spec, scenario, teacher_options);
@@ -294,6 +307,7 @@ CorrectionModel train_correction(const Study& study, const std::string& name, co
     teacher_options.role = Role::validation;
     validation = collect_teacher_set(ensemble, fewer, scenario, teacher_options);
   }
+  if (!is_first(options.ranks)) return model_of_first(*options.ranks);
   const TeacherSet& met = wider ? *wider : teacher;
   const Lessons lessons{teacher, met, validation ? *validation : teacher, space};
 
@@ -325,6 +339,7 @@ CorrectionModel train_correction(const Study& study, const std::string& name, co
         fmt::format("without truth, by {}: {}", spec.training.teacher, study.configuration_line(spec.training.teacher));
   if (wider) model.provenance["covariance_scenario"] = provenance_of(*spec.training.covariance_scenario);
   model.validate();
+  if (options.ranks) give_to_all(*options.ranks, model);
   if (report) *report = found;
   return model;
 }

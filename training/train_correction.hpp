@@ -22,6 +22,7 @@ struct TrainOptions {
   /// A file that the training of a recurrent network keeps after each epoch and goes on from; it stays, for the caller
   /// to remove once the model is safe. Empty: none.
   std::filesystem::path checkpoint = {};
+  Ranks* ranks = nullptr;  ///< share the teacher's runs; the first trains, and gives the model to the others
 };
 
 struct TrainReport {
@@ -30,7 +31,8 @@ struct TrainReport {
   double training_seconds = 0.0;  ///< of the network alone
 };
 
-/// Trains the corrected tracker of that name. The same for the same study and seed, to the bit.
+/// Trains the corrected tracker of that name. The same for the same study and seed, to the bit. The report is of the
+/// process that trains.
 CorrectionModel train_correction(const Study& study, const std::string& name, const TrainOptions& options,
                                  TrainReport* report = nullptr);
 

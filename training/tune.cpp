@@ -3,7 +3,9 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <fmt/format.h>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -56,11 +58,35 @@ class TunedTracker {
   std::vector<double> start_;
 };
 
+// What tuning wants to know of runs: the squared errors of each quantity, and the sum of the NEES and how many they are.
+struct TuningFigures {
+  std::vector<SquaredErrors> errors;
+  SquaredErrors nees;
+
+  explicit TuningFigures(std::size_t quantities) : errors(quantities) {}
+  explicit TuningFigures(const RunScore& score) {
+    for (std::size_t q = 0; q < score.error.size(); ++q) errors.push_back(squared_errors(score, q));
+    for (const double value : score.nees)
+      if (!std::isnan(value)) nees.add(SquaredErrors{value, 1.0});
+  }
+
+  void exchange(TallyStream& stream) {
+    for (SquaredErrors& of_quantity : errors) truebearing::exchange(of_quantity, stream);
+    truebearing::exchange(nees, stream);
+  }
+};
+
+struct Tuned {
+  double cost = 0.0;  // sum of ln RMSE; as large as can be where that is no number
+  double nees = 0.0;  // mean over runs and scored steps
+  int dimension = 0;
+};
+
 // Scores a tracker on the same recordings again and again.
 class TuningRuns {
  public:
   TuningRuns(const Study& study, const TuneOptions& options)
-      : study_(study), threads_(options.threads), recordings_(study.tuning_runs()) {
+      : study_(study), threads_(options.threads), ranks_(options.ranks), recordings_(study.tuning_runs()) {
     monte_carlo(recordings_.size(), threads_, [&](std::size_t run, std::size_t) {
       recordings_[run] = study.scenario().simulate({options.seed, Role::tuning, run});
     });
@@ -68,26 +94,59 @@ class TuningRuns {
 
   const std::vector<Recording>& recordings() const { return recordings_; }
 
-  TrackerSummary score(const Tracker& tracker) const {
+  // Of the tracker that the numbers make.
+  Tuned score(const Tracker& tracker, const std::vector<double>& logarithms) const {
     Ensemble ensemble;
     ensemble.add("tuned", tracker.fresh());
     TrackerSet prototype(std::move(ensemble));
     prototype.show_member("tuned");
     const std::vector<Scorer> scorers{Scorer(study_.scenario().truth_space(), tracker.space())};
-    std::vector<std::vector<RunScore>> scores(recordings_.size());
+    const std::size_t quantities = scorers.front().quantities().size();
+    std::vector<TuningFigures> figures(recordings_.size(), TuningFigures(quantities));
     std::vector<std::optional<TrackerSet>> sets(worker_count(threads_));
-    monte_carlo(recordings_.size(), threads_, [&](std::size_t run, std::size_t worker) {
+    const BlockRange own = own_runs(ranks_, recordings_.size());
+    monte_carlo(own.size(), threads_, [&](std::size_t i, std::size_t worker) {
+      const std::size_t run = own.first + i * own.stride;
       if (!sets[worker]) sets[worker].emplace(prototype.fresh());
-      scores[run] = score_recording(*sets[worker], scorers, recordings_[run], study_.scoring());
+      figures[run] = TuningFigures(score_recording(*sets[worker], scorers, recordings_[run], study_.scoring()).front());
     });
-    std::vector<const RunScore*> all;
-    for (const std::vector<RunScore>& score : scores) all.push_back(&score.front());
-    return summarise("tuned", scorers.front(), all, study_.scoring());
+    if (ranks_) exchange(*ranks_, logarithms, figures);
+    Tuned tuned{0.0, 0.0, scorers.front().dimension()};
+    for (std::size_t q = 0; q < quantities; ++q) {
+      RunErrors errors;
+      for (const TuningFigures& of_run : figures) errors.add(of_run.errors[q]);
+      tuned.cost += std::log(errors.rmse().value);
+    }
+    if (!std::isfinite(tuned.cost)) tuned.cost = std::numeric_limits<double>::max();
+    SquaredErrors nees;
+    for (const TuningFigures& of_run : figures) nees.add(of_run.nees);
+    tuned.nees = nees.sum / nees.count;
+    return tuned;
   }
 
  private:
+  // Gives every rank the figures of the others' runs. Each looks for the least cost by itself, and no wrong one is found
+  // where they should ever look at different places.
+  static void exchange(Ranks& ranks, const std::vector<double>& logarithms, std::vector<TuningFigures>& figures) {
+    TallyStream own(false);
+    for (const double logarithm : logarithms) own.whole(std::bit_cast<std::uint64_t>(logarithm));
+    for (std::size_t run = ranks.rank(); run < figures.size(); run += ranks.size()) figures[run].exchange(own);
+    const std::vector<std::string> all = ranks.gather_all(own.written());
+    for (std::size_t rank = 0; rank < all.size(); ++rank) {
+      TallyStream stream(all[rank]);
+      for (const double logarithm : logarithms)
+        if (stream.whole(0) != std::bit_cast<std::uint64_t>(logarithm))
+          throw InputError(fmt::format("rank {}", rank), fmt::format("rounds otherwise than rank {}", ranks.rank()),
+                           "machines of one kind");
+      if (rank == ranks.rank()) continue;
+      for (std::size_t run = rank; run < figures.size(); run += ranks.size()) figures[run].exchange(stream);
+      stream.finish();
+    }
+  }
+
   const Study& study_;
   int threads_;
+  Ranks* ranks_;
   std::vector<Recording> recordings_;
 };
 
@@ -120,36 +179,30 @@ std::vector<double> fitted_matrix(const std::vector<Recording>& recordings, cons
   return {transposed.data(), transposed.data() + transposed.size()};
 }
 
-double cost_of(const TrackerSummary& summary) {
-  double cost = 0.0;
-  for (const QuantitySummary& quantity : summary.quantities) cost += std::log(quantity.rmse);
-  return std::isfinite(cost) ? cost : std::numeric_limits<double>::max();
-}
-
 std::vector<double> offset(std::vector<double> values, double by) {
   for (double& value : values) value += by;
   return values;
 }
 
 // What numbers cost; those that make no tracker, a probability above 1 say, are as bad as can be.
-std::optional<TrackerSummary> score_of(const std::vector<double>& logarithms, const TunedTracker& tracker,
-                                       const TuningRuns& runs) {
+std::optional<Tuned> score_of(const std::vector<double>& logarithms, const TunedTracker& tracker,
+                              const TuningRuns& runs) {
   std::unique_ptr<Tracker> made;
   try {
     made = tracker.make(logarithms);
   } catch (const InputError&) {
     return std::nullopt;
   }
-  return runs.score(*made);
+  return runs.score(*made, logarithms);
 }
 
 // One factor on all numbers that leaves the estimates as they are: choose it by the NEES.
 void fix_common_factor(std::vector<double>& logarithms, const TunedTracker& tracker, const TuningRuns& runs) {
-  const TrackerSummary summary = runs.score(*tracker.make(logarithms));
+  const Tuned before = runs.score(*tracker.make(logarithms), logarithms);
   std::vector<double> scaled = logarithms;
-  for (double& logarithm : scaled) logarithm += std::log(summary.nees / summary.dimension);
-  const std::optional<TrackerSummary> after = score_of(scaled, tracker, runs);
-  if (after && std::abs(cost_of(*after) - cost_of(summary)) < 1e-9) logarithms = scaled;
+  for (double& logarithm : scaled) logarithm += std::log(before.nees / before.dimension);
+  const std::optional<Tuned> after = score_of(scaled, tracker, runs);
+  if (after && std::abs(after->cost - before.cost) < 1e-9) logarithms = scaled;
 }
 
 }  // namespace
@@ -171,8 +224,8 @@ TunedValues tune_tracker(const Study& study, const std::string& name, const Tune
   const TunedTracker tracker(study, spec);
 
   const auto cost_at = [&](const std::vector<double>& logarithms) {
-    const std::optional<TrackerSummary> summary = score_of(logarithms, tracker, runs);
-    return summary ? cost_of(*summary) : std::numeric_limits<double>::max();
+    const std::optional<Tuned> tuned = score_of(logarithms, tracker, runs);
+    return tuned ? tuned->cost : std::numeric_limits<double>::max();
   };
   int evaluations = 0;
   double best = std::numeric_limits<double>::max();

@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "truebearing/evaluation/ranks.hpp"
 #include "truebearing/study/parameters_file.hpp"
 #include "truebearing/study/study.hpp"
 
@@ -16,6 +17,7 @@ struct TuneOptions {
   int max_evaluations = 600;
   /// Called with (evaluations done, at most, best cost so far); may be empty.
   std::function<void(int, int, double)> progress;
+  Ranks* ranks = nullptr;  ///< share the runs of each evaluation; all of them find the same numbers
 };
 
 struct TuneReport {
@@ -27,7 +29,7 @@ struct TuneReport {
 /// Fits tracker `name` on study.tuning_runs() runs of the role `tuning`. All numbers are positive and move in their
 /// logarithms, by Nelder and Mead's simplex with restarts (NLopt). Where multiplying all of them by one factor leaves
 /// the estimates as they are (Q, R and P0 of a Kalman filter), the factor is set so that the mean NEES is the dimension
-/// of the state.
+/// of the state. Throws InputError, also where the ranks' machines do not round alike.
 TunedValues tune_tracker(const Study& study, const std::string& name, const TuneOptions& options,
                          TuneReport* report = nullptr);
 

@@ -68,16 +68,14 @@ void run_compare(const CompareArguments& arguments, Ranks* ranks) {
   std::vector<std::filesystem::path> inputs = study.input_files();
   if (!options.truth.empty()) inputs.emplace_back(options.truth);
   if (is_first(ranks)) check_outputs({options.json, options.report.page}, inputs);
-  if (ranks)
-    check_all_have(*ranks,
-                   fmt::format("{} {} {} {} {} {}", TRUEBEARING_VERSION, hash_of_inputs(study), options.seed,
-                               options.runs, arguments.all, options.details || options.report.wanted()),
-                   "version, other options, or another text of the study, or of a model or scenario of it,");
+  check_ranks(ranks, inputs,
+              fmt::format("{} {} {} {} {}", options.seed, options.runs, arguments.all, arguments.retrain,
+                          options.details || options.report.wanted()));
   if (!is_first(ranks)) options.quiet = true;
   if (!arguments.shard.empty()) return compare_shard(study, arguments, options);
   CorrectionModels models;
   if (arguments.retrain) {
-    const WorkflowOptions workflow{options.seed, options.threads, options.quiet};
+    const WorkflowOptions workflow{options.seed, options.threads, options.quiet, ranks};
     study.set_parameters(tune_study(study, workflow));
     models = train_study(study, {}, workflow);
   }

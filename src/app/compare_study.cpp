@@ -87,12 +87,9 @@ void compare_study(const Study& study, const CorrectionModels& models, const Com
   const auto add = [&](std::size_t block, std::string_view bytes) { figures.add(block, bytes); };
   {
     ProgressLine progress("compare", options.quiet);
-    if (ranks)
-      run_blocks(comparison.runs(), *ranks, progress.callback(), add);
-    else
-      run_blocks(comparison.runs(), BlockRange{0, comparison.runs().blocks()}, progress.callback(), add);
+    run_blocks(comparison.runs(), ranks, progress.callback(), add);
   }
-  if (!ranks || ranks->rank() == 0) comparison.write(figures.comparison());
+  if (is_first(ranks)) comparison.write(figures.comparison());
 }
 
 }  // namespace truebearing

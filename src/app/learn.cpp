@@ -12,6 +12,7 @@
 #include "app/compare_study.hpp"
 #include "app/data_folder.hpp"
 #include "app/output.hpp"
+#include "app/ranks_of_mpirun.hpp"
 #include "app/subcommands.hpp"
 #include "app/terminal.hpp"
 #include "app/workflow.hpp"
@@ -40,7 +41,7 @@ void make_folder(const std::string& folder) {
   if (error) throw InputError(folder, "cannot be made: " + error.message(), "a folder");
 }
 
-void learn(const LearnArguments& arguments) {
+void learn(const LearnArguments& arguments, Ranks* ranks) {
   Study study = Study::load(arguments.study);
   CompareStudyOptions options = arguments.options;
   options.seed = arguments.seed.value_or(study.seed());
@@ -59,27 +60,32 @@ void learn(const LearnArguments& arguments) {
   if (tunes) own.push_back(study.parameters_path());
   for (const std::string& name : names) own.push_back(study.tracker(name).correction->model);
   for (const std::string& name : learned) own.push_back(study.tracker(name).learned->file);
-  if (!arguments.folder.empty()) make_folder(arguments.folder);
+  options.quiet = options.quiet || !is_first(ranks);
+  check_ranks(ranks, inputs_without(study, own), fmt::format("{} {}", options.seed, options.runs));
+  if (is_first(ranks) && !arguments.folder.empty()) make_folder(arguments.folder);
   std::vector<std::string> outputs, models_to_write;
   for (const fs::path& file : own) outputs.push_back(output_of(arguments, file));
   for (const std::string& name : names)
     models_to_write.push_back(output_of(arguments, study.tracker(name).correction->model));
   outputs.insert(outputs.end(), {options.json, options.report.page});
-  check_products(study, outputs, own);
+  if (is_first(ranks)) check_products(study, outputs, own);
 
-  WorkflowOptions workflow{options.seed, options.threads, options.quiet};
+  WorkflowOptions workflow{options.seed, options.threads, options.quiet, ranks};
   keep_checkpoints(study, names, models_to_write, workflow);
-  for (const std::string& name : learned)  // first: filters that are tuned may have them
-    write_motion(study.tracker(name).learned->file.string(), train_motion(study, name, workflow));
+  std::vector<std::string> motions;
+  for (const std::string& name : learned) motions.push_back(study.tracker(name).learned->file.string());
+  train_motions(study, learned, motions, workflow);  // first: filters that are tuned may have them
   if (tunes) {
-    write_parameters(outputs.front(), tune_study(study, workflow));
+    const ParametersFile parameters = tune_study(study, workflow);
+    if (is_first(ranks)) write_parameters(outputs.front(), parameters);
     // With the digits of the file: a model belongs to these.
-    study.set_parameters(read_parameters_file(outputs.front()));
+    study.set_parameters(parse_parameters(parameters_text(parameters), outputs.front()));
   }
   const CorrectionModels models = train_study(study, {}, workflow);
-  for (std::size_t i = 0; i < names.size(); ++i) write_model(models_to_write[i], *models.at(names[i]));
-  compare_study(study, models, options);
-  if (!arguments.folder.empty()) {
+  if (is_first(ranks))
+    for (std::size_t i = 0; i < names.size(); ++i) write_model(models_to_write[i], *models.at(names[i]));
+  compare_study(study, models, options, ranks);
+  if (is_first(ranks) && !arguments.folder.empty()) {
     std::vector<std::string> named;
     for (const fs::path& file : own) named.push_back(file.filename().string());
     say(fmt::format(
@@ -105,7 +111,7 @@ void add_learn(const Subcommands& all) {
   add_report_arguments(command, options.report);
   add_table_arguments(command, options.tables);
   command.flag("--quiet", options.quiet, "no progress");
-  command.runs([arguments] { learn(*arguments); });
+  command.runs([arguments] { with_ranks([&](Ranks* ranks) { learn(*arguments, ranks); }); });
 }
 
 }  // namespace truebearing

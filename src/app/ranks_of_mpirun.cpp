@@ -49,10 +49,11 @@ std::unique_ptr<Ranks> join() {
   return module->join();
 }
 
-// mpirun ends the others where one is gone.
+// mpirun ends the others where one is gone. It does not say why: one that failed has said so itself.
 void tell_of_the_end(int) {
   constexpr std::string_view kText =
-      "truebearing: mpirun: has ended all ranks, as one was killed or lost its machine; nothing was written\n";
+      "truebearing: mpirun: all ranks end, as one failed, was killed or lost its machine, or as mpirun was told to; "
+      "what was not done by then is not written\n";
   [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, kText.data(), kText.size());
   ::_exit(1);
 }
@@ -66,15 +67,15 @@ void with_ranks(const std::function<void(Ranks* ranks)>& work) {
   try {
     work(ranks.get());
   } catch (const std::exception& error) {
-    // What is wrong at all of them is told once, by the first.
-    if (ranks->rank() != 0) std::this_thread::sleep_for(std::chrono::seconds(1));
+    // What is wrong at all of them is told once, by the first, whose end is the others' too.
+    if (ranks->rank() != 0) std::this_thread::sleep_for(std::chrono::seconds(4));
     say(fmt::format("truebearing: {}{}", ranks->rank() == 0 ? "" : fmt::format("rank {}: ", ranks->rank()),
                     error.what()));
     std::signal(SIGTERM, SIG_DFL);
     ranks->abort();
   }
+  std::signal(SIGTERM, SIG_DFL);  // all is done
   ranks->leave();
-  std::signal(SIGTERM, SIG_DFL);
 }
 
 }  // namespace truebearing

@@ -12,9 +12,4 @@ namespace truebearing {
 /// all of them end. Throws InputError.
 void with_ranks(const std::function<void(Ranks* ranks)>& work);
 
-/// Is this the one that prints and writes?
-inline bool is_first(const Ranks* ranks) {
-  return !ranks || ranks->rank() == 0;
-}
-
 }  // namespace truebearing

@@ -123,14 +123,18 @@ Shard Shard::parse(const std::string& text) {
   throw InputError("--shard", "is " + as_shown(text), "I/N, part I of N, from 1/N to N/N");
 }
 
-std::string hash_of_inputs(const Study& study) {
+std::string hash_of_files(const std::vector<std::filesystem::path>& files) {
   ContentHash hash;
-  for (const std::filesystem::path& file : study.input_files()) {
+  for (const std::filesystem::path& file : files) {
     const std::string text = read_text_file(file, kMostInput);
     hash.take(text.size());
     for (const char byte : text) hash.take(static_cast<unsigned char>(byte));
   }
   return fmt::format("{:016x}", hash.value());
+}
+
+std::string hash_of_inputs(const Study& study) {
+  return hash_of_files(study.input_files());
 }
 
 void write_shard(StudyComparison& comparison, const ShardHeader& header, const std::string& output, bool quiet) {

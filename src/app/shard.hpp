@@ -36,7 +36,9 @@ struct ShardHeader {
   Shard shard;
 };
 
-/// Of the study's file and of every file that it names: what differs between hosts or days is found out by it.
+/// What differs between hosts or days is found out by it.
+std::string hash_of_files(const std::vector<std::filesystem::path>& files);
+/// Of the study's file and of every file that it names.
 std::string hash_of_inputs(const Study& study);
 
 /// Runs the blocks of a shard and writes them. Throws InputError.

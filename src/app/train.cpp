@@ -10,6 +10,7 @@
 
 #include "app/data_folder.hpp"
 #include "app/output.hpp"
+#include "app/ranks_of_mpirun.hpp"
 #include "app/subcommands.hpp"
 #include "app/workflow.hpp"
 
@@ -25,7 +26,7 @@ struct TrainArguments {
   bool quiet = false;
 };
 
-void train(const TrainArguments& options) {
+void train(const TrainArguments& options, Ranks* ranks) {
   Study study = Study::load(options.study);
   for (const std::string& name : options.trackers)
     if (!study.tracker(name).correction && !study.tracker(name).learned)
@@ -47,13 +48,16 @@ void train(const TrainArguments& options) {
   for (const std::string& name : learned) motions.push_back(output_of(study.tracker(name).learned->file));
   std::vector<std::string> all = outputs;
   all.insert(all.end(), motions.begin(), motions.end());
-  check_products(study, all, own);
-  WorkflowOptions workflow{options.seed.value_or(study.seed()), options.threads, options.quiet};
+  WorkflowOptions workflow{options.seed.value_or(study.seed()), options.threads, options.quiet || !is_first(ranks),
+                           ranks};
+  check_ranks(ranks, inputs_without(study, own),
+              fmt::format("{} {} {}", workflow.seed, fmt::join(names, " "), fmt::join(learned, " ")));
+  if (is_first(ranks)) check_products(study, all, own);
   keep_checkpoints(study, names, outputs, workflow);
-  for (std::size_t i = 0; i < learned.size(); ++i)  // first: filters that are corrected may have them
-    write_motion(motions[i], train_motion(study, learned[i], workflow));
+  train_motions(study, learned, motions, workflow);  // first: filters that are corrected may have them
   if (names.empty()) return;
   const CorrectionModels models = train_study(study, names, workflow);
+  if (!is_first(ranks)) return;
   for (std::size_t i = 0; i < names.size(); ++i) write_model(outputs[i], *models.at(names[i]));
 }
 
@@ -68,7 +72,7 @@ void add_train(const Subcommands& all) {
   command.argument("--seed", options->seed, "seed; the study's own where not given");
   command.argument("--threads", options->threads, "0: one per core").within(0, 1024);
   command.flag("--quiet", options->quiet, "no progress");
-  command.runs([options] { train(*options); });
+  command.runs([options] { with_ranks([&](Ranks* ranks) { train(*options, ranks); }); });
 }
 
 }  // namespace truebearing

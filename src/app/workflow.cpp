@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "app/output.hpp"
+#include "app/shard.hpp"
 #include "training/learned_motion_training.hpp"
 #include "training/train_correction.hpp"
 #include "training/tune.hpp"
@@ -22,7 +23,8 @@ std::string checkpoint_of(const std::string& model) {
   return model + ".checkpoint";
 }
 
-// RMSE of the corrected tracker, its base and its reference on runs that neither training nor evaluation sees.
+// RMSE of the corrected tracker, its base and its reference on runs that neither training nor evaluation sees; the same
+// text at all ranks.
 std::string validation_scores(const Study& study, const std::string& name, const CorrectionModels& models,
                               const WorkflowOptions& options) {
   const CorrectionSpec& spec = study.tracker(name).correction.value();
@@ -36,13 +38,19 @@ std::string validation_scores(const Study& study, const std::string& name, const
   comparison_options.runs = kValidationRuns;
   comparison_options.threads = options.threads;
   comparison_options.scoring = study.scoring();
-  const Comparison comparison = compare(trackers, {{study.name(), &study.scenario()}}, comparison_options);
+  const std::vector<NamedScenario> scenarios{{study.name(), &study.scenario()}};
+  ComparisonRuns runs(trackers, scenarios, comparison_options);
+  ComparisonFigures figures(runs);
+  run_blocks(runs, options.ranks, {}, [&](std::size_t block, std::string_view bytes) { figures.add(block, bytes); });
+  if (!is_first(options.ranks)) return from_first(*options.ranks, {});
+  const Comparison comparison = figures.comparison();
   std::string text;
   for (const TrackerSummary& summary : comparison.trackers) {
     text += fmt::format("{}{}", text.empty() ? "" : "; ", summary.name);
     for (const QuantitySummary& quantity : summary.quantities)
       text += fmt::format(" {} {:.4g} +- {:.2g}", quantity.name, quantity.rmse, quantity.rmse_se);
   }
+  if (options.ranks) from_first(*options.ranks, text);
   return text;
 }
 
@@ -64,8 +72,8 @@ std::vector<std::string> corrected_trackers(const Study& study, const std::vecto
   return corrected;
 }
 
-void check_products(const Study& study, const std::vector<std::string>& outputs,
-                    const std::vector<std::filesystem::path>& replaced) {
+std::vector<std::filesystem::path> inputs_without(const Study& study,
+                                                  const std::vector<std::filesystem::path>& replaced) {
   std::vector<std::filesystem::path> inputs;
   for (std::filesystem::path& input : study.input_files()) {
     std::error_code unknown;
@@ -74,7 +82,18 @@ void check_products(const Study& study, const std::vector<std::string>& outputs,
     };
     if (std::none_of(replaced.begin(), replaced.end(), is_input)) inputs.push_back(std::move(input));
   }
-  check_outputs(outputs, inputs);
+  return inputs;
+}
+
+void check_products(const Study& study, const std::vector<std::string>& outputs,
+                    const std::vector<std::filesystem::path>& replaced) {
+  check_outputs(outputs, inputs_without(study, replaced));
+}
+
+void check_ranks(Ranks* ranks, const std::vector<std::filesystem::path>& files, const std::string& options) {
+  if (ranks)
+    check_all_have(*ranks, fmt::format("{} {} {}", TRUEBEARING_VERSION, hash_of_files(files), options),
+                   "version, other options, or another text of the study, or of a model or scenario of it,");
 }
 
 ParametersFile tune_study(const Study& study, const WorkflowOptions& options) {
@@ -90,6 +109,7 @@ ParametersFile tune_study(const Study& study, const WorkflowOptions& options) {
       TuneOptions tune_options;
       tune_options.seed = options.seed;
       tune_options.threads = options.threads;
+      tune_options.ranks = options.ranks;
       tune_options.progress = [&](int done, int most, double) {
         progress.show(static_cast<std::size_t>(done), static_cast<std::size_t>(most));
       };
@@ -113,6 +133,9 @@ std::vector<std::string> learned_trackers(const Study& study, const std::vector<
   return learned;
 }
 
+namespace {
+
+// Of one process.
 MotionResidual train_motion(const Study& study, const std::string& name, const WorkflowOptions& options) {
   LearnedMotionReport report;
   MotionResidual residual;
@@ -132,6 +155,21 @@ MotionResidual train_motion(const Study& study, const std::string& name, const W
         "what it was",
         name, residual.network.rules(), report.rows, report.training_seconds, report.remaining));
   return residual;
+}
+
+void write_motion(const std::string& output, const MotionResidual& residual) {
+  write_output(output, learned_motion_text(residual));
+  if (!is_standard_output(output)) fmt::print("written: {}\n", output);
+}
+
+}  // namespace
+
+void train_motions(const Study& study, const std::vector<std::string>& names, const std::vector<std::string>& outputs,
+                   const WorkflowOptions& options) {
+  if (is_first(options.ranks))
+    for (std::size_t i = 0; i < names.size(); ++i) write_motion(outputs[i], train_motion(study, names[i], options));
+  // From here on all read what the first has written.
+  if (!names.empty()) check_ranks(options.ranks, study.input_files(), "");
 }
 
 void keep_checkpoints(const Study& study, const std::vector<std::string>& names,
@@ -156,6 +194,7 @@ CorrectionModels train_study(const Study& study, const std::vector<std::string>&
       TrainOptions train_options{options.seed, options.threads, teacher.callback(), [&](int done, int total, double) {
                                    training.show(static_cast<std::size_t>(done), static_cast<std::size_t>(total));
                                  }};
+      train_options.ranks = options.ranks;
       if (const auto file = options.checkpoints.find(name); file != options.checkpoints.end())
         train_options.checkpoint = file->second;
       model = train_correction(study, name, train_options, &report);
@@ -173,11 +212,6 @@ CorrectionModels train_study(const Study& study, const std::vector<std::string>&
 
 void write_parameters(const std::string& output, const ParametersFile& parameters) {
   write_output(output, parameters_text(parameters));
-  if (!is_standard_output(output)) fmt::print("written: {}\n", output);
-}
-
-void write_motion(const std::string& output, const MotionResidual& residual) {
-  write_output(output, learned_motion_text(residual));
   if (!is_standard_output(output)) fmt::print("written: {}\n", output);
 }
 

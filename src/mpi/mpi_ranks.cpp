@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ranks over MPI, by its C interface.
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
-#include <limits>
 #include <mpi.h>
+#include <thread>
 
 #include "truebearing/core/error.hpp"
 #include "mpi/mpi_module.hpp"
@@ -13,6 +14,23 @@ namespace {
 
 constexpr int kNumber = 1, kPart = 2;
 constexpr std::size_t kMostAtOnce = std::size_t{1} << 30;  // MPI counts in int
+
+// For all ranks, or for rank 0. What comes soon is taken at once; what takes long (a training) shall not cost the others'
+// processors meanwhile, as MPI's own waiting does.
+void wait_for(MPI_Request request) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::milliseconds kSoon{2};
+  constexpr std::chrono::microseconds kBetweenLooks{500};
+  const Clock::time_point begin = Clock::now();
+  for (int is_done = 0;;) {
+    MPI_Test(&request, &is_done, MPI_STATUS_IGNORE);
+    if (is_done != 0) return;
+    if (Clock::now() - begin < kSoon)
+      std::this_thread::yield();
+    else
+      std::this_thread::sleep_for(kBetweenLooks);
+  }
+}
 
 int part_of(std::size_t left) {
   return static_cast<int>(std::min(left, kMostAtOnce));
@@ -60,16 +78,20 @@ class MpiRanks final : public Ranks {
   }
 
   std::vector<std::string> gather_all(std::string_view bytes) override {
+    std::vector<unsigned long> lengths(size());
+    const unsigned long own = bytes.size();
+    MPI_Request request;
+    MPI_Iallgather(&own, 1, MPI_UNSIGNED_LONG, lengths.data(), 1, MPI_UNSIGNED_LONG, MPI_COMM_WORLD, &request);
+    wait_for(request);
     std::vector<std::string> all(size());
     for (int root = 0; root < size_; ++root) {
       std::string& text = all[static_cast<std::size_t>(root)];
       if (root == rank_) text = bytes;
-      unsigned long length = text.size();
-      MPI_Bcast(&length, 1, MPI_UNSIGNED_LONG, root, MPI_COMM_WORLD);
-      text.resize(length);
+      text.resize(lengths[static_cast<std::size_t>(root)]);
       for (std::size_t done = 0; done < text.size();) {
         const int part = part_of(text.size() - done);
-        MPI_Bcast(text.data() + done, part, MPI_BYTE, root, MPI_COMM_WORLD);
+        MPI_Ibcast(text.data() + done, part, MPI_BYTE, root, MPI_COMM_WORLD, &request);
+        wait_for(request);
         done += static_cast<std::size_t>(part);
       }
     }

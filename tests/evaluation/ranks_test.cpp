@@ -5,59 +5,21 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <barrier>
-#include <deque>
 #include <fmt/format.h>
-#include <future>
-#include <mutex>
+#include <numeric>
 
 #include "tests/support/error_message.hpp"
 #include "tests/support/line_trackers.hpp"
+#include "tests/support/thread_ranks.hpp"
 #include "truebearing/evaluation/report.hpp"
 
 namespace truebearing::ranks_test {
 namespace {
 
+using testing::at_ranks;
+using ::testing::Each;
 using testing::error_message;
 using ::testing::HasSubstr;
-
-// Threads in place of processes.
-struct Wire {
-  explicit Wire(std::size_t count) : said(count), met(static_cast<std::ptrdiff_t>(count)) {}
-  std::mutex mutex;
-  std::deque<std::pair<std::size_t, std::string>> to_first;
-  std::vector<std::string> said;
-  std::barrier<> met;
-};
-
-class ThreadRanks final : public Ranks {
- public:
-  ThreadRanks(Wire& wire, std::size_t rank) : wire_(wire), rank_(rank) {}
-  std::size_t rank() const override { return rank_; }
-  std::size_t size() const override { return wire_.said.size(); }
-  void send(std::size_t number, std::string_view bytes) override {
-    const std::lock_guard lock(wire_.mutex);
-    wire_.to_first.emplace_front(number, bytes);  // the last comes first
-  }
-  std::optional<std::pair<std::size_t, std::string>> receive() override {
-    const std::lock_guard lock(wire_.mutex);
-    if (wire_.to_first.empty()) return std::nullopt;
-    auto come = std::move(wire_.to_first.front());
-    wire_.to_first.pop_front();
-    return come;
-  }
-  std::vector<std::string> gather_all(std::string_view bytes) override {
-    wire_.said[rank_] = bytes;
-    wire_.met.arrive_and_wait();
-    return wire_.said;
-  }
-  void leave() override {}
-  [[noreturn]] void abort() override { std::abort(); }
-
- private:
-  Wire& wire_;
-  std::size_t rank_;
-};
 
 TrackerSet trackers() {
   Ensemble ensemble;
@@ -76,33 +38,74 @@ TEST(Ranks, ShareTheRunsOfAComparisonAndTheFirstHasTheFiguresOfOneProcessByteFor
   options.threads = 1;
   const std::string one = comparison_json(compare(set, scenarios, options));
   for (const std::size_t count : {2u, 5u}) {
-    Wire wire(count);
-    std::vector<std::future<std::string>> ranks;
     std::atomic<std::size_t> most_done = 0;
-    for (std::size_t rank = 0; rank < count; ++rank)
-      ranks.push_back(std::async(std::launch::async, [&, rank] {
-        ThreadRanks own(wire, rank);
-        ComparisonRuns runs(set, scenarios, options);
-        ComparisonFigures figures(runs);
-        run_blocks(
-            runs, own, [&](std::size_t done, std::size_t) { most_done = std::max(most_done.load(), done); },
-            [&](std::size_t block, std::string_view bytes) { figures.add(block, bytes); });
-        return rank == 0 ? comparison_json(figures.comparison()) : std::string();
-      }));
-    EXPECT_EQ(ranks[0].get(), one);
+    const std::vector<std::string> said = at_ranks(count, [&](Ranks& ranks) {
+      ComparisonRuns runs(set, scenarios, options);
+      ComparisonFigures figures(runs);
+      run_blocks(
+          runs, &ranks, [&](std::size_t done, std::size_t) { most_done = std::max(most_done.load(), done); },
+          [&](std::size_t block, std::string_view bytes) { figures.add(block, bytes); });
+      return is_first(&ranks) ? comparison_json(figures.comparison()) : std::string();
+    });
+    EXPECT_EQ(said[0], one);
     EXPECT_EQ(most_done, 602u);
   }
 }
 
+TEST(Ranks, DoEachPieceOfWorkOnceAndTheFirstHasAllOfIt) {
+  for (const std::size_t items : {0u, 1u, 50u}) {
+    std::vector<std::atomic<int>> made(items);
+    const auto taken = at_ranks(3, [&](Ranks& ranks) {
+      std::vector<std::string> first(items), second(items);
+      std::size_t most_done = 0;
+      const auto make = [&](std::size_t item, std::size_t worker) {
+        EXPECT_EQ(item % 3, ranks.rank());
+        EXPECT_LT(worker, 2u);
+        ++made[item];
+        return fmt::format("{}", item);
+      };
+      const auto into = [](std::vector<std::string>& all) {
+        return [&](std::size_t item, const std::string& bytes) { all[item] += bytes; };
+      };
+      share_work(ranks, items, 2, make, into(first), [&](std::size_t done, std::size_t total) {
+        EXPECT_EQ(total, items);
+        EXPECT_EQ(done, ++most_done);
+      });
+      share_work(
+          ranks, items, 1, [](std::size_t item, std::size_t) { return fmt::format("again {}", item); }, into(second));
+      EXPECT_EQ(most_done, ranks.rank() == 0 ? items : 0u);
+      first.insert(first.end(), second.begin(), second.end());
+      return first;
+    });
+    std::vector<std::string> expected;
+    for (const char* text : {"{}", "again {}"})
+      for (std::size_t item = 0; item < items; ++item) expected.push_back(fmt::format(fmt::runtime(text), item));
+    EXPECT_EQ(taken[0], expected);
+    EXPECT_THAT(taken[1], Each(""));
+    EXPECT_THAT(taken[2], Each(""));
+    EXPECT_EQ(std::accumulate(made.begin(), made.end(), 0), static_cast<int>(items));
+  }
+}
+
+TEST(Ranks, HaveOneRunInSoMany) {
+  const auto have = at_ranks(3, [](Ranks& ranks) {
+    const BlockRange own = own_runs(&ranks, 7);
+    return std::vector<std::size_t>{own.first, own.stride, own.size()};
+  });
+  EXPECT_EQ(have, (std::vector<std::vector<std::size_t>>{{0, 3, 3}, {1, 3, 2}, {2, 3, 2}}));
+  EXPECT_EQ(own_runs(nullptr, 7).size(), 7u);
+}
+
+TEST(Ranks, HearWhatTheFirstSays) {
+  EXPECT_THAT(at_ranks(3, [](Ranks& ranks) { return from_first(ranks, fmt::format("by {}", ranks.rank())); }),
+              Each("by 0"));
+}
+
 TEST(Ranks, WithOtherInputsAreRefusedAtAllOfThem) {
-  Wire wire(3);
-  std::vector<std::future<std::string>> messages;
-  for (std::size_t rank = 0; rank < 3; ++rank)
-    messages.push_back(std::async(std::launch::async, [&, rank] {
-      ThreadRanks own(wire, rank);
-      return error_message([&] { check_all_have(own, rank == 2 ? "other" : "text", "study"); });
-    }));
-  for (auto& message : messages) EXPECT_THAT(message.get(), HasSubstr("rank 2: has another study than rank 0"));
+  const auto messages = at_ranks(3, [](Ranks& ranks) {
+    return error_message([&] { check_all_have(ranks, ranks.rank() == 2 ? "other" : "text", "study"); });
+  });
+  EXPECT_THAT(messages, Each(HasSubstr("rank 2: has another study than rank 0")));
 }
 
 }  // namespace

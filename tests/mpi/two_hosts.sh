@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # two_hosts.sh PROGRAM STUDY [RUNS]: mpirun on two hosts, which are two network namespaces with a name, an address and a
-# wire of their own: the same bytes as one process, and a clear end within 10 s where a rank is killed or the wire is cut.
-# Prints the times of one process and of one rank on each host. Status 77 where this machine permits no namespaces or has
-# no mpirun.
+# wire of their own: the same bytes as one process of what compare, tune, train and learn write, of a study with a correction
+# "nfnn" that the repository has; and a clear end within 10 s where a rank is killed or the wire is cut. Prints the times of
+# one process and of one rank on each host. Status 77 where this machine permits no namespaces or has no mpirun.
 set -uo pipefail
 program=$(realpath "$1") study=$(realpath "$2") runs=${3-400}
 skip() { echo "two_hosts: left out: $1"; exit 77; }
@@ -56,21 +56,59 @@ for file in one two; do grep -v '"ns_per_step"' "$scratch/$file.json" >"$scratch
 cmp "$scratch/one.figures" "$scratch/two.figures" || fail "other bytes on two hosts"
 echo "two_hosts: $runs runs: one process $one ms, one rank on each of two hosts $two ms, same bytes"
 
-# ends_well WHAT: a long comparison on both hosts ends within 10 s of WHAT, in a line of ours, and leaves no results.
+# What ranks tune and teach together is what one process does. Only the first says what it found, and writes.
+for work in tune train; do
+  command=("$work" "$study" --threads 1)
+  if [[ $work == train ]]; then command+=(--tracker nfnn); fi
+  timed "$program" "${command[@]}" -o "$scratch/one.made"; one=$took_ms
+  mv "$scratch/said" "$scratch/one.said"
+  timed two_hosts "$program" "${command[@]}" -o "$scratch/two.made"; two=$took_ms
+  cmp "$scratch/one.made" "$scratch/two.made" || fail "other bytes of $work"
+  for file in one.said said; do sed -E 's/[0-9.]+ s;|one.made|two.made//g' "$scratch/$file" >"$scratch/$file.text"; done
+  cmp "$scratch/one.said.text" "$scratch/said.text" || fail "said otherwise by $work"
+  echo "two_hosts: $work: one process $one ms, one rank on each of two hosts $two ms, same bytes"
+done
+for name in one two; do
+  mkdir "$scratch/$name"
+  command=("$program" learn "$study" --threads 1 --quiet -o "$scratch/$name" --json "$scratch/$name/learnt.json")
+  if [[ $name == one ]]; then timed "${command[@]}"; else timed two_hosts "${command[@]}"; fi
+  sed -i '/"ns_per_step"/d' "$scratch/$name/learnt.json"
+done
+diff -r "$scratch/one" "$scratch/two" || fail "other bytes of learn"
+two_hosts "$program" compare "$study" --retrain --runs 20 --threads 1 --quiet --json "$scratch/retrained.json" >"$scratch/said" 2>&1 || fail "compare --retrain"
+"$program" compare "$study" --retrain --runs 20 --threads 1 --quiet --json "$scratch/one.json" >/dev/null
+cmp <(grep -v '"ns_per_step"' "$scratch/one.json") <(grep -v '"ns_per_step"' "$scratch/retrained.json") || fail "other bytes of compare --retrain"
+
+# What is at fault is said once, by the first, whoever finds it.
+two_hosts "$program" tune "$scratch/none.toml" >"$scratch/said" 2>&1 && fail "status 0 without a study"
+(($(grep -c '^truebearing:' "$scratch/said") == 1)) || { cat "$scratch/said" >&2; fail "not one line on a missing study"; }
+
+# Studies that are long at work: they tune, teach and train for more than ten seconds.
+repository=$(dirname "$(realpath "$0")")/../..
+mkdir -p "$scratch/data/studies"
+ln -s "$(realpath "$repository/data/scenarios")" "$scratch/data/scenarios"
+ln -s "$(realpath "$repository/models")" "$scratch/models"
+long_study() { sed -E "$2" "$study" >"$scratch/data/studies/$1.toml"; }
+long_study tunes '/^\[tuning\]/,/^\[/s/^runs = .*/runs = 300000/'
+long_study teaches '/^\[trackers.nfnn.training\]/,$s/^runs = .*/runs = 300000/'
+long_study trains '/^\[trackers.nfnn.training\]/,$s/^iterations = .*/iterations = 100000/'
+
+# ends_well WHAT COMMAND...: a long command on both hosts ends within 10 s of WHAT, in a line of ours, and leaves no output.
 ends_well() {
-  rm -f "$scratch/long.json"
-  two_hosts "${compare[@]}" --runs 100000000 --json "$scratch/long.json" >"$scratch/said" 2>&1 &
-  local job=$!
+  local what=$1 job begin took
+  shift
+  rm -f "$scratch/long.made"
+  two_hosts "$program" "$@" --threads 1 --quiet >"$scratch/said" 2>&1 &
+  job=$!
   sleep 2
-  local begin
   begin=$(now_ms)
-  "$@"
-  wait "$job" && fail "status 0 after $*"
-  local took=$(($(now_ms) - begin))
-  ((took < 10000)) || fail "$took ms from $* to the end"
-  grep -q '^truebearing: mpirun: has ended all ranks' "$scratch/said" || { cat "$scratch/said" >&2; fail "no line after $*"; }
-  [[ ! -e $scratch/long.json ]] || fail "results after $*"
-  echo "two_hosts: $1: ended after $took ms"
+  "$what"
+  wait "$job" && fail "status 0 of $1 after $what"
+  took=$(($(now_ms) - begin))
+  ((took < 10000)) || fail "$took ms from $what to the end of $1"
+  grep -q '^truebearing: mpirun: all ranks end, as one failed, was killed' "$scratch/said" || { cat "$scratch/said" >&2; fail "no line of $1 after $what"; }
+  [[ ! -e $scratch/long.made ]] || fail "output of $1 after $what"
+  echo "two_hosts: $1: $what: ended after $took ms"
 }
 kill_rank_on_b() {
   local pid
@@ -79,5 +117,9 @@ kill_rank_on_b() {
   done
 }
 cut_wire() { ip -n "$b" link set wire down; for pid in $(ip netns pids "$b"); do kill -KILL "$pid"; done; }
-ends_well kill_rank_on_b
-ends_well cut_wire
+studies=$scratch/data/studies
+ends_well kill_rank_on_b compare "$study" --runs 100000000 --json "$scratch/long.made"
+ends_well kill_rank_on_b tune "$studies/tunes.toml" -o "$scratch/long.made"
+ends_well kill_rank_on_b train "$studies/teaches.toml" --tracker nfnn -o "$scratch/long.made"
+ends_well kill_rank_on_b train "$studies/trains.toml" --tracker nfnn -o "$scratch/long.made"
+ends_well cut_wire compare "$study" --runs 100000000 --json "$scratch/long.made"

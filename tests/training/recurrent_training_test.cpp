@@ -11,6 +11,7 @@
 #include "tests/support/error_message.hpp"
 #include "tests/support/radar_study.hpp"
 #include "tests/support/recurrent_models.hpp"
+#include "tests/support/thread_ranks.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "training/recurrent_checkpoint.hpp"
 #include "training/train_correction.hpp"
@@ -199,6 +200,26 @@ TEST_F(RecurrentTraining, RunTimeNetworkAnswersAsLibTorchOverAThousandSteps) {
       worst = std::max(worst, (answer.y - wanted.col(k).cast<double>()).lpNorm<Eigen::Infinity>());
     }
     EXPECT_LT(worst, 2e-5) << encoder;
+  }
+}
+
+// Only the first of them needs what trains it.
+TEST_F(RecurrentTraining, OfAStudyGivesAllRanksTheModelOfOneProcess) {
+  const testing::TemporaryFolder folder;
+  const Study study = Study::load(testing::write_study(folder, testing::kRecurrentStudy));
+  TrainOptions options;
+  options.torch_folder = TRUEBEARING_TORCH_FOLDER;
+  const CorrectionModel one = train_correction(study, "gru", options);
+  const auto texts = testing::at_ranks(2, [&](Ranks& ranks) {
+    TrainOptions shared = options;
+    shared.ranks = &ranks;
+    if (!is_first(&ranks)) shared.torch_folder = "/nowhere";
+    const CorrectionModel model = train_correction(study, "gru", shared);
+    return std::pair(model_text(model), weights_text(model));
+  });
+  for (const auto& [text, weights] : texts) {
+    EXPECT_EQ(text, model_text(one));
+    EXPECT_EQ(weights, weights_text(one));
   }
 }
 

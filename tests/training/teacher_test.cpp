@@ -10,6 +10,7 @@
 #include "tests/support/correction_models.hpp"
 #include "tests/support/error_message.hpp"
 #include "tests/support/line_trackers.hpp"
+#include "tests/support/thread_ranks.hpp"
 
 #include "truebearing/core/constants.hpp"
 
@@ -47,6 +48,42 @@ FakeScenario other_truth(const Scenario& scenario, double offset, std::size_t fr
               recording.truth[0].x[k].array() += offset;
             return recording;
           }};
+}
+
+// All numbers of a set.
+std::vector<double> numbers(const TeacherSet& set) {
+  std::vector<double> all;
+  for (const Eigen::MatrixXd* matrix :
+       {&set.X, &set.Y, &set.reference, &set.covariance_factors, &set.reference_factors})
+    all.insert(all.end(), matrix->data(), matrix->data() + matrix->size());
+  for (const std::vector<bool>* flags : {&set.begins, &set.taught, &set.used})
+    all.insert(all.end(), flags->begin(), flags->end());
+  return all;
+}
+
+TEST(Teacher, RanksShareTheRunsAndTheFirstHasTheSetOfOneProcess) {
+  const LineScenario scenario = testing::radar_family(12);
+  for (const bool whole_tracks : {false, true}) {
+    TeacherOptions options{.seed = 9, .threads = 1, .progress = {}, .whole_tracks = whole_tracks};
+    const std::vector<double> one = numbers(collect_teacher_set(ensemble(), spec(7), scenario, options));
+    ASSERT_GT(one.size(), 84u);
+    for (const std::size_t count : {2u, 9u}) {
+      const auto sets = testing::at_ranks(count, [&](Ranks& ranks) {
+        TeacherOptions shared = options;
+        shared.ranks = &ranks;
+        std::size_t done = 0;
+        shared.progress = [&](std::size_t runs, std::size_t total) {
+          EXPECT_EQ(total, 7u);
+          done = runs;
+        };
+        const TeacherSet set = collect_teacher_set(ensemble(), spec(7), scenario, shared);
+        EXPECT_EQ(done, ranks.rank() == 0 ? 7u : 0u);
+        return numbers(set);
+      });
+      EXPECT_EQ(sets[0], one);
+      for (std::size_t rank = 1; rank < count; ++rank) EXPECT_TRUE(sets[rank].empty());
+    }
+  }
 }
 
 TEST(Teacher, RowsAreTruthMinusTheBaseStepByStep) {

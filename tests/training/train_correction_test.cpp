@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "training/train_correction.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/support/radar_study.hpp"
+#include "tests/support/thread_ranks.hpp"
 #include "truebearing/correction/model_file.hpp"
 #include "truebearing/evaluation/comparison.hpp"
 
 namespace truebearing::train_correction_test {
 namespace {
 
+using testing::at_ranks;
+using ::testing::Each;
 using testing::kStudy;
 using testing::replaced;
 using testing::TemporaryFolder;
@@ -29,6 +33,22 @@ TEST(TrainCorrection, SameSeedIsTheSameModelOnAnyNumberOfThreads) {
   EXPECT_EQ(model_text(train(study, 5, 2)), one);
   EXPECT_EQ(model_text(train(study, 5, 8)), one);
   EXPECT_NE(model_text(train(study, 6, 1)), one);
+}
+
+TEST(TrainCorrection, RanksHaveTheModelOfOneProcess) {
+  const TemporaryFolder folder;
+  const Study study = Study::load(write_study(folder));
+  const std::string one = model_text(train(study, 5, 1));
+  for (const std::size_t count : {2u, 3u})
+    EXPECT_THAT(at_ranks(count,
+                         [&](Ranks& ranks) {
+                           TrainOptions options;
+                           options.seed = 5;
+                           options.threads = 1;
+                           options.ranks = &ranks;
+                           return model_text(train_correction(study, "nfnn", options));
+                         }),
+                Each(one));
 }
 
 TEST(TrainCorrection, ModelRemembersWhatItWasTrainedFor) {

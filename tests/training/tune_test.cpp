@@ -7,11 +7,14 @@
 #include "tests/support/error_message.hpp"
 #include "tests/support/radar_study.hpp"
 #include "tests/support/statistics.hpp"
+#include "tests/support/thread_ranks.hpp"
 #include "truebearing/simulation/lorenz_scenario.hpp"
 
 namespace truebearing::tune_test {
 namespace {
 
+using testing::at_ranks;
+using ::testing::Each;
 using testing::error_message;
 using ::testing::HasSubstr;
 using testing::kParameters;
@@ -74,6 +77,37 @@ TEST(Tune, FindsTheNoisesThatMadeTheRuns) {
   EXPECT_LT(report.cost_after, report.cost_before);
   EXPECT_GT(report.evaluations, 10);
   EXPECT_LE(report.evaluations, 161);
+}
+
+TEST(Tune, RanksFindTheNumbersOfOneProcessToTheBit) {
+  const TemporaryFolder folder;
+  const Study study = known(folder);
+  TuneReport one;
+  const TunedValues values = tune(study, "filter", 1, &one, 40);
+  const auto tuned = [&](Ranks& ranks) {
+    TuneOptions options{.seed = 2, .threads = 1, .max_evaluations = 40, .progress = {}, .ranks = &ranks};
+    TuneReport report;
+    const TunedValues found = tune_tracker(study, "filter", options, &report);
+    EXPECT_EQ(report.evaluations, one.evaluations);
+    EXPECT_EQ(report.cost_before, one.cost_before);
+    EXPECT_EQ(report.cost_after, one.cost_after);
+    return found;
+  };
+  EXPECT_THAT(at_ranks(2, tuned), Each(values));
+  EXPECT_THAT(at_ranks(61, tuned), Each(values)) << "more than there are runs";
+}
+
+// As where one machine's exponential rounds otherwise: nobody goes on with runs of two trackers.
+TEST(Tune, RanksThatLookAtDifferentNumbersAreTold) {
+  const TemporaryFolder folder;
+  const Study study = known(folder),
+              other = known(folder, replaced(kTune, "variance_m2 = 2e3", "variance_m2 = 2001.0"));
+  const auto messages = at_ranks(2, [&](Ranks& ranks) {
+    TuneOptions options{.seed = 2, .threads = 1, .max_evaluations = 10, .progress = {}, .ranks = &ranks};
+    return error_message([&] { tune_tracker(ranks.rank() == 0 ? study : other, "filter", options); });
+  });
+  EXPECT_EQ(messages[0], "rank 1: rounds otherwise than rank 0; valid: machines of one kind");
+  EXPECT_EQ(messages[1], "rank 0: rounds otherwise than rank 1; valid: machines of one kind");
 }
 
 // From either side, over seeds: the mean of ln(found / true) is zero within its interval, and no seed is far off.

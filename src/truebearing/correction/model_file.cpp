@@ -191,11 +191,19 @@ CorrectionModel parse_model(std::string_view text, const std::string& name) {
   });
 }
 
-std::string weights_name(const CorrectionModel& model) {
+CorrectionModel parse_model(std::string_view text, const std::string& weights, const std::string& name) {
+  return model_from(parse_json(text, name), name, [&](const std::string&) { return weights; });
+}
+
+std::string weights_text(const CorrectionModel& model) {
   const auto* network = std::get_if<GatedRecurrent>(&model.network);
-  if (!network) return {};
+  return network ? gated_recurrent_weights(*network) : std::string();
+}
+
+std::string weights_name(const CorrectionModel& model) {
+  if (!std::holds_alternative<GatedRecurrent>(model.network)) return {};
   ContentHash hash;
-  for (const char byte : gated_recurrent_weights(*network)) hash.take(static_cast<unsigned char>(byte));
+  for (const char byte : weights_text(model)) hash.take(static_cast<unsigned char>(byte));
   const auto said = [&](const char* key, const char* otherwise) {
     const auto found = model.provenance.find(key);
     return found == model.provenance.end() ? std::string(otherwise) : found->second;
@@ -212,8 +220,7 @@ void write_model_file(const std::filesystem::path& path, const CorrectionModel& 
     before = parse_json(read_text_file(path, JsonLimits{}.max_bytes), path.string()).value("weights", "");
   } catch (const std::exception&) {  // whatever it was, it is replaced
   }
-  if (!weights.empty())
-    write_file_atomically(folder / weights, gated_recurrent_weights(std::get<GatedRecurrent>(model.network)));
+  if (!weights.empty()) write_file_atomically(folder / weights, weights_text(model));
   write_file_atomically(path, model_text(model));
   std::error_code ignored;
   const bool ours = before.ends_with(kWeightsEnding) && before.find('/') == std::string::npos;

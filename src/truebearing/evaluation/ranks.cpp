@@ -8,13 +8,14 @@
 #include <map>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "truebearing/core/error.hpp"
 
 namespace truebearing {
 namespace {
 
-// Rank 0 computes too: it looks for what has come, and leaves the processor to its own runs in between.
+// Rank 0 works too: it looks for what has come, and leaves the processor to its own runs in between.
 constexpr std::chrono::microseconds kBetweenLooks{500};
 
 // Gives blocks on in their order, whoever they come from.
@@ -25,7 +26,6 @@ class InOrder {
       : runs_(runs), progress_(progress), take_(take), total_(runs.scenarios().size() * runs.options().runs) {}
 
   void add(std::size_t block, std::string bytes) {
-    const std::lock_guard lock(mutex_);
     waiting_.emplace(block, std::move(bytes));
     for (auto it = waiting_.begin(); it != waiting_.end() && it->first == next_; it = waiting_.erase(it), ++next_)
       take_(it->first, it->second);
@@ -39,7 +39,6 @@ class InOrder {
   const std::function<void(std::size_t, std::string_view)>& take_;
   std::size_t total_, done_ = 0, next_ = 0;
   std::map<std::size_t, std::string> waiting_;
-  std::mutex mutex_;
 };
 
 }  // namespace
@@ -52,33 +51,63 @@ void check_all_have(Ranks& ranks, const std::string& text, const std::string& wh
                        "the same on all machines");
 }
 
-void run_blocks(ComparisonRuns& runs, Ranks& ranks, const Progress& progress,
-                const std::function<void(std::size_t block, std::string_view bytes)>& take) {
-  // Every rank has one block in so many: what costs more stands together in sets.
-  const BlockRange own{ranks.rank(), runs.blocks(), ranks.size()};
-  if (ranks.rank() != 0) {
-    run_blocks(runs, own, {}, [&](std::size_t block, std::string_view bytes) { ranks.send(block, bytes); });
-    return;
-  }
-  InOrder in_order(runs, progress, take);
-  std::future<void> computed = std::async(std::launch::async, [&] {
-    run_blocks(runs, own, {},
-               [&](std::size_t block, std::string_view bytes) { in_order.add(block, std::string(bytes)); });
-  });
-  std::size_t missing = runs.blocks() - own.size();
-  const auto failed = [&] {
-    return computed.valid() && computed.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+std::string from_first(Ranks& ranks, std::string_view bytes) {
+  return std::move(ranks.gather_all(is_first(&ranks) ? bytes : std::string_view()).front());
+}
+
+BlockRange own_runs(const Ranks* ranks, std::size_t runs) {
+  // What costs more may stand together, in sets of runs say.
+  return ranks ? BlockRange{ranks->rank(), runs, ranks->size()} : BlockRange{0, runs};
+}
+
+void share_work(Ranks& ranks, std::size_t items, int threads,
+                const std::function<std::string(std::size_t item, std::size_t worker)>& make,
+                const std::function<void(std::size_t item, std::string bytes)>& take, const Progress& progress) {
+  const BlockRange own = own_runs(&ranks, items);
+  std::mutex mutex;
+  const auto do_own = [&](const auto& give) {
+    monte_carlo(own.size(), threads, [&](std::size_t i, std::size_t worker) {
+      const std::size_t item = own.first + i * own.stride;
+      std::string bytes = make(item, worker);
+      const std::lock_guard lock(mutex);
+      give(item, std::move(bytes));
+    });
   };
-  while (missing > 0) {
-    if (failed()) computed.get();  // throws what its own runs threw
-    if (auto come = ranks.receive()) {
-      in_order.add(come->first, std::move(come->second));
-      --missing;
-    } else {
-      std::this_thread::sleep_for(kBetweenLooks);
+  if (ranks.rank() != 0) {
+    do_own([&](std::size_t item, const std::string& bytes) { ranks.send(item, bytes); });
+  } else {
+    std::size_t done = 0;
+    const auto add = [&](std::size_t item, std::string bytes) {
+      take(item, std::move(bytes));
+      if (progress) progress(++done, items);
+    };
+    std::future<void> computed = std::async(std::launch::async, [&] { do_own(add); });
+    const auto is_ready = [&] {
+      return computed.valid() && computed.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    };
+    for (std::size_t missing = items - own.size(); missing > 0;) {
+      if (is_ready()) computed.get();  // throws what its own work threw
+      if (auto come = ranks.receive()) {
+        const std::lock_guard lock(mutex);
+        add(come->first, std::move(come->second));
+        --missing;
+      } else {
+        std::this_thread::sleep_for(kBetweenLooks);
+      }
     }
+    if (computed.valid()) computed.get();
   }
-  if (computed.valid()) computed.get();
+  ranks.gather_all({});  // nobody sends of the next work while rank 0 receives of this
+}
+
+void run_blocks(ComparisonRuns& runs, Ranks* ranks, const Progress& progress,
+                const std::function<void(std::size_t block, std::string_view bytes)>& take) {
+  if (!ranks) return run_blocks(runs, BlockRange{0, runs.blocks()}, progress, take);
+  InOrder in_order(runs, progress, take);
+  share_work(
+      *ranks, runs.blocks(), runs.options().threads,
+      [&](std::size_t block, std::size_t worker) { return runs.run(block, worker); },
+      [&](std::size_t block, std::string bytes) { in_order.add(block, std::move(bytes)); });
 }
 
 }  // namespace truebearing

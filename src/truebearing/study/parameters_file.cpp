@@ -70,13 +70,10 @@ void put_numbers(toml::table& table, const std::string& path, const std::vector<
   parent->insert_or_assign(last, std::move(array));
 }
 
-}  // namespace
-
-ParametersFile read_parameters_file(const std::filesystem::path& path) {
-  const SharedTable table = read_toml_file(path);
+ParametersFile parameters_from(const SharedTable& table, const std::string& name_of_file) {
   ParametersFile parameters;
   const KeySurvey apart;  // what a command wrote is no part of a study's keys
-  TableReader reader(table, path.string());
+  TableReader reader(table, name_of_file);
   for (const std::string& name : reader.keys()) {
     TableReader tracker = reader.table(name);
     for (const std::string& parameter : tracker.keys()) {
@@ -88,6 +85,16 @@ ParametersFile read_parameters_file(const std::filesystem::path& path) {
     }
   }
   return parameters;
+}
+
+}  // namespace
+
+ParametersFile read_parameters_file(const std::filesystem::path& path) {
+  return parameters_from(read_toml_file(path), path.string());
+}
+
+ParametersFile parse_parameters(std::string_view text, const std::string& name) {
+  return parameters_from(parse_toml(text, name), name);
 }
 
 std::string parameters_text(const ParametersFile& parameters) {

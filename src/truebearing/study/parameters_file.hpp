@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -25,6 +26,8 @@ struct ParametersFile {
 
 /// Throws InputError with file and key.
 ParametersFile read_parameters_file(const std::filesystem::path& path);
+/// The same of its text; `name` stands for the file in messages.
+ParametersFile parse_parameters(std::string_view text, const std::string& name);
 std::string parameters_text(const ParametersFile& parameters);
 
 /// The path of numbers of any sign: they are fitted by least squares, not by their logarithms.

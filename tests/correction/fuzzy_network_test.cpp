@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "truebearing/core/error.hpp"
@@ -65,6 +66,43 @@ TEST(FuzzyNetwork, IsTheWeightedSumOfThePaper) {
     }
     const Eigen::VectorXd expected = p.output_scale.cwiseProduct(numerator / denominator);
     EXPECT_LT((evaluate(network, input) - expected).norm(), kExact * (1.0 + expected.norm()));
+  }
+}
+
+// Of any number of rules, whether they fill up a register or not: strengths to the last digits of their exponents, and in
+// one go what they weight.
+TEST(FuzzyNetwork, AnswersWhatItsStrengthsWeight) {
+  RandomStream random = test_stream(31);
+  const auto normal = [&] { return random.normal(); };
+  for (const int rules : {1, 3, 7, 8, 9, 16, 21, 31, 32, 33, 64, 250, 256}) {
+    FuzzyNetwork::Parameters p = random_parameters(32);
+    p.centres = 2.0 * Eigen::MatrixXd::NullaryExpr(rules, kInputs, normal);
+    p.widths = Eigen::MatrixXd::NullaryExpr(rules, kInputs, [&] { return random.uniform(0.3, 2.0); });
+    p.consequents = Eigen::MatrixXd::NullaryExpr(rules, kOutputs, normal);
+    Eigen::MatrixXd matrices = Eigen::MatrixXd::NullaryExpr(rules, 9, normal);
+    for (const auto& [above, below] : {std::pair{3, 1}, {6, 2}, {7, 5}}) matrices.col(above) = matrices.col(below);
+    const FuzzyNetwork network(p);
+    for (int n = 0; n < 20; ++n) {
+      const FuzzyNetwork::Inputs input = random_input(random, 1.5);
+      const Eigen::VectorXd u = (input - p.input_mean).cwiseQuotient(p.input_scale).cwiseMax(-4.0).cwiseMin(4.0);
+      Eigen::VectorXd exponent(rules);
+      for (int j = 0; j < rules; ++j)
+        exponent[j] = -0.5 * (u.transpose() - p.centres.row(j)).cwiseQuotient(p.widths.row(j)).squaredNorm();
+      const Eigen::VectorXd strength = (exponent.array() - exponent.maxCoeff()).exp();
+      FuzzyNetwork::Strengths phi;
+      network.strengths(input, phi);
+      for (int j = 0; j < rules; ++j) {
+        const double expected = strength[j] / strength.sum();
+        EXPECT_NEAR(phi[j], expected, 1e-15 * (10.0 - exponent[j]) * expected + 1e-300) << rules;
+      }
+
+      FuzzyNetwork::Outputs y;
+      Eigen::Matrix3d mean;
+      network.answer(input, y, 3, matrices.data(), mean.data());
+      EXPECT_LT((y - network.output(phi)).norm(), 1e-14 * (1.0 + network.output(phi).norm())) << rules;
+      const Eigen::Matrix3d weighted = (matrices.transpose() * phi).reshaped(3, 3);
+      EXPECT_LT((mean - weighted).norm(), 1e-14 * (1.0 + weighted.norm())) << rules;
+    }
   }
 }
 

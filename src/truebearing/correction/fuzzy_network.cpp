@@ -3,12 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 
+#include "truebearing/core/constants.hpp"
 #include "truebearing/core/error.hpp"
-#include "truebearing/correction/rule_strengths_kernel.hpp"
 
 namespace truebearing {
 namespace {
@@ -65,44 +64,67 @@ FuzzyNetwork::FuzzyNetwork(Parameters parameters) : parameters_(std::move(parame
   validate(parameters_);
   const Eigen::ArrayXXd inverse_widths = std::sqrt(0.5) / parameters_.widths.array();
   const Eigen::ArrayXXd scaled_centres = parameters_.centres.array() * inverse_widths;
-  scaled_consequents_ = parameters_.output_scale.asDiagonal() * parameters_.consequents.transpose();
+  scaled_consequents_ = parameters_.consequents * parameters_.output_scale.asDiagonal();
   // Each factor is finite; the products of extreme ones need not be, and 0 * inf is not a strength.
   if (!inverse_widths.allFinite() || !scaled_centres.allFinite() || !scaled_consequents_.allFinite()) {
     throw InputError("fuzzy network", "widths or output_scale out of range", "products with finite results");
   }
-  const Eigen::Index blocks = (rules() + kLanes - 1) / kLanes;
-  inverse_widths_.setZero(kLanes, blocks * inputs());
-  scaled_centres_.setConstant(kLanes, blocks * inputs(), kNeverFires);
+  constexpr Eigen::Index kBlock = kernels::kRuleBlock;
+  const Eigen::Index blocks = (rules() + kBlock - 1) / kBlock;
+  inverse_widths_.setZero(kBlock, blocks * inputs());
+  scaled_centres_.setConstant(kBlock, blocks * inputs(), kNeverFires);
   for (Eigen::Index j = 0; j < rules(); ++j)
     for (Eigen::Index i = 0; i < inputs(); ++i) {
-      inverse_widths_(j % kLanes, j / kLanes * inputs() + i) = inverse_widths(j, i);
-      scaled_centres_(j % kLanes, j / kLanes * inputs() + i) = scaled_centres(j, i);
+      inverse_widths_(j % kBlock, j / kBlock * inputs() + i) = inverse_widths(j, i);
+      scaled_centres_(j % kBlock, j / kBlock * inputs() + i) = scaled_centres(j, i);
     }
+}
+
+// False where an input is not a number.
+bool FuzzyNetwork::standardise(const Inputs& input, double* u) const {
+  const double *mean = parameters_.input_mean.data(), *scale = parameters_.input_scale.data(), *from = input.data();
+  const double clip = parameters_.input_clip;
+  double sum = 0.0;
+  for (int i = 0; i < inputs(); ++i) {
+    u[i] = std::clamp((from[i] - mean[i]) / scale[i], -clip, clip);
+    sum += u[i];
+  }
+  return !std::isnan(sum);
+}
+
+kernels::RuleBlocks FuzzyNetwork::blocks() const {
+  return {.blocks = static_cast<int>(inverse_widths_.cols()) / inputs(),
+          .inputs = inputs(),
+          .centres = scaled_centres_.data(),
+          .inverse_widths = inverse_widths_.data()};
 }
 
 void FuzzyNetwork::strengths(const Inputs& input, Strengths& phi) const {
-  const Eigen::Index d = inputs();
-  phi.resize(rules());
-  Inputs u(d);
-  for (Eigen::Index i = 0; i < d; ++i) {
-    const double standardised = (input[i] - parameters_.input_mean[i]) / parameters_.input_scale[i];
-    if (std::isnan(standardised)) {
-      phi.setConstant(std::numeric_limits<double>::quiet_NaN());
-      return;
-    }
-    u[i] = std::clamp(standardised, -parameters_.input_clip, parameters_.input_clip);
-  }
   // Of whole blocks: behind the last rule phi has room for the lanes that fill up.
-  static_assert(kMaxRules % kLanes == 0);
-  kernels::rule_strengths({.blocks = static_cast<int>(inverse_widths_.cols() / d),
-                           .inputs = static_cast<int>(d),
-                           .centres = scaled_centres_.data(),
-                           .inverse_widths = inverse_widths_.data()},
-                          u.data(), phi.data());
+  static_assert(kMaxRules % kernels::kRuleBlock == 0);
+  phi.resize(rules());
+  double u[kMaxInputs];
+  if (standardise(input, u))
+    kernels::rule_strengths(blocks(), u, phi.data());
+  else
+    phi.setConstant(kNaN);
 }
 
 FuzzyNetwork::Outputs FuzzyNetwork::output(const Strengths& phi) const {
-  return scaled_consequents_.lazyProduct(phi);
+  Outputs y(outputs());
+  kernels::rule_means({rules(), outputs(), scaled_consequents_.data(), 0, nullptr}, phi.data(), y.data(), nullptr);
+  return y;
+}
+
+void FuzzyNetwork::answer(const Inputs& input, Outputs& y, int n, const double* matrices, double* mean) const {
+  y.resize(outputs());
+  double u[kMaxInputs];
+  if (standardise(input, u)) {
+    kernels::rule_answer(blocks(), {rules(), outputs(), scaled_consequents_.data(), n, matrices}, u, y.data(), mean);
+  } else {
+    y.setConstant(kNaN);
+    std::fill_n(mean, n * n, kNaN);
+  }
 }
 
 FuzzyNetwork::Jacobian FuzzyNetwork::jacobian(const Inputs& input, const Strengths& phi) const {
@@ -118,8 +140,7 @@ FuzzyNetwork::Jacobian FuzzyNetwork::jacobian(const Inputs& input, const Strengt
       const double s = parameters_.widths(j, i);
       const double weight = phi[j] * ((parameters_.centres(j, i) - u) / s) / s;
       total += weight;
-      const double* const w = scaled_consequents_.data() + j * slope.rows();
-      for (Eigen::Index k = 0; k < slope.rows(); ++k) column[k] += weight * w[k];
+      for (Eigen::Index k = 0; k < slope.rows(); ++k) column[k] += weight * scaled_consequents_(j, k);
     }
     for (Eigen::Index k = 0; k < slope.rows(); ++k) column[k] = (column[k] - total * y[k]) / parameters_.input_scale[i];
   }

@@ -13,15 +13,15 @@
 #include <Eigen/Core>
 
 #include "truebearing/core/bounded.hpp"
-#include "truebearing/core/simd_lanes.hpp"
 #include "truebearing/correction/network_answer.hpp"
+#include "truebearing/correction/rule_strengths_kernel.hpp"
 
 namespace truebearing {
 
 class FuzzyNetwork {
  public:
   static constexpr int kMaxInputs = kMaxFeatures;
-  static constexpr int kMaxRules = 256;
+  static constexpr int kMaxRules = kernels::kMostRules;
   static constexpr int kMaxOutputs = kMaxDimension;
 
   using Inputs = NetworkInputs;
@@ -53,6 +53,9 @@ class FuzzyNetwork {
   void strengths(const Inputs& input, Strengths& phi) const;
   /// y (p) for given strengths. No allocation.
   Outputs output(const Strengths& phi) const;
+  /// Both at once, and mean (n x n): that of a symmetric matrix of each rule, the rows of `matrices` (M x n n, by
+  /// columns). To rounding what strengths() weights. No allocation.
+  void answer(const Inputs& input, Outputs& y, int n, const double* matrices, double* mean) const;
 
   using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxOutputs, kMaxInputs>;
   /// dy/dinput (p x d) at `input`, whose strengths are phi: with a_ji = (c_ji - u_i) / s_ji^2
@@ -61,14 +64,17 @@ class FuzzyNetwork {
   Jacobian jacobian(const Inputs& input, const Strengths& phi) const;
 
  private:
-  // Rules are evaluated kLanes at a time; those that fill up the last block never fire.
-  using Blocks = Eigen::Array<double, kLanes, Eigen::Dynamic>;
+  // Rules are evaluated in blocks; those that fill up the last one never fire.
+  using Blocks = Eigen::Array<double, kernels::kRuleBlock, Eigen::Dynamic>;
+
+  bool standardise(const Inputs& input, double* u) const;
+  kernels::RuleBlocks blocks() const;
 
   Parameters parameters_;
   // The exponents as they are evaluated, -((u - c) / (sqrt(2) s))^2: column b d + i is input i of block b.
   Blocks scaled_centres_;               // c / (sqrt(2) s)
   Blocks inverse_widths_;               // 1 / (sqrt(2) s)
-  Eigen::MatrixXd scaled_consequents_;  // (p x M), in the units of the outputs
+  Eigen::MatrixXd scaled_consequents_;  // (M x p), in the units of the outputs
 };
 
 }  // namespace truebearing

@@ -10,18 +10,14 @@
 namespace truebearing {
 
 void RuleBase::answer(const NetworkInputs& inputs, NetworkMemory&, NetworkAnswer& answer) const {
-  FuzzyNetwork::Strengths phi;
-  network.strengths(inputs, phi);
-  answer.y = network.output(phi);
   if (moments.size() == 0) {
-    answer.inflation = phi.dot(inflation);
     answer.moments.resize(0, 0);
-    return;
+    network.answer(inputs, answer.y, 1, inflation.data(), &answer.inflation);
+  } else {
+    const int n = network.outputs();
+    answer.moments.resize(n, n);
+    network.answer(inputs, answer.y, n, moments.data(), answer.moments.data());
   }
-  const Eigen::Index n = answer.y.size();
-  answer.moments.resize(n, n);
-  for (Eigen::Index j = 0; j < n; ++j)
-    for (Eigen::Index i = j; i < n; ++i) answer.moments(i, j) = answer.moments(j, i) = phi.dot(moments.col(i + n * j));
 }
 
 void RuleBase::check(const CorrectionDesign& design, int n) const {

@@ -2,11 +2,10 @@
 #include "truebearing/correction/rule_strengths_kernel.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 
-#include "truebearing/core/simd_dispatch.hpp"
-#include "truebearing/core/simd_exponential.hpp"
-#include "truebearing/core/simd_lanes.hpp"
+#include "truebearing/core/simd_width.hpp"
 
 namespace truebearing::kernels {
 namespace {
@@ -15,43 +14,177 @@ namespace {
 // hundred cycles each.
 constexpr double kLowestExponent = -700.0;
 
-[[gnu::always_inline]] inline void rule_strengths_loops(const RuleBlocks& rules, const double* u, double* phi) {
-  const double *c = rules.centres, *w = rules.inverse_widths;
-  Lanes largest = Lanes{} - std::numeric_limits<double>::infinity();
-  for (int b = 0; b < rules.blocks; ++b) {
-    Lanes exponent{};
-    for (int i = 0; i < rules.inputs; ++i, c += kLanes, w += kLanes) {
-      Lanes centre, inverse_width;
-      load(c, centre);
-      load(w, inverse_width);
-      const Lanes distance = u[i] * inverse_width - centre;
-      exponent -= distance * distance;
+// A block of rules in as many registers as it takes. What is taken over its lanes is taken in one order, whatever the
+// width.
+template <int kWidth>
+struct Block {
+  using Vector = VectorOf<kWidth>;
+  using Doubles = typename Vector::Doubles;
+  static constexpr std::size_t kParts = static_cast<std::size_t>(kRuleBlock / kWidth);
+
+  Doubles part[kParts];
+
+  [[gnu::always_inline]] void fill(double value) {
+    for (Doubles& p : part) p = Doubles{} + value;
+  }
+  [[gnu::always_inline]] void load(const double* from) {
+    for (std::size_t k = 0; k < kParts; ++k, from += kWidth) Vector::load(from, part[k]);
+  }
+  [[gnu::always_inline]] void store(double* to) const {
+    for (std::size_t k = 0; k < kParts; ++k, to += kWidth) Vector::store(part[k], to);
+  }
+  // Its halves.
+  [[gnu::always_inline]] void split(VectorOf<4>::Doubles& low, VectorOf<4>::Doubles& high) const {
+    if constexpr (kWidth == kRuleBlock) {
+      low = __builtin_shufflevector(part[0], part[0], 0, 1, 2, 3);
+      high = __builtin_shufflevector(part[0], part[0], 4, 5, 6, 7);
+    } else {
+      low = part[0];
+      high = part[1];
     }
-    largest = largest > exponent ? largest : exponent;
-    store(exponent, phi + b * kLanes);
   }
-  double highest = largest[0];
-  for (int k = 1; k < kLanes; ++k) highest = std::max<double>(highest, largest[k]);
-  Lanes total{};
-  for (int b = 0; b < rules.blocks; ++b) {
-    Lanes strength;
-    load(phi + b * kLanes, strength);
-    strength -= highest;
-    strength = kLowestExponent > strength ? Lanes{} + kLowestExponent : strength;
-    exponential(strength);
-    total += strength;
-    store(strength, phi + b * kLanes);
+  [[gnu::always_inline]] double sum() const {
+    VectorOf<4>::Doubles low, high;
+    split(low, high);
+    low += high;
+    return (low[0] + low[2]) + (low[1] + low[3]);
   }
-  const double all = sum(total);
-  for (int b = 0; b < rules.blocks; ++b) {
-    Lanes strength;
-    load(phi + b * kLanes, strength);
-    store(strength / all, phi + b * kLanes);
+  [[gnu::always_inline]] double largest() const {
+    VectorOf<4>::Doubles low, high;
+    split(low, high);
+    low = low > high ? low : high;
+    return std::max(std::max(low[0], low[2]), std::max(low[1], low[3]));
   }
+};
+
+// e^x of kLowestExponent <= x <= 0 to two units in the last place: 2^n e^r with r = x - n ln 2 of at most half of it, by
+// Taylor's polynomial, whose rest is below 1e-17, and whose terms are summed in pairs, for none to wait.
+template <typename Doubles, typename Bits>
+[[gnu::always_inline]] inline void exponential(Doubles& x) {
+  constexpr double kInteger = 0x1.8p52;  // a sum with it has no digits behind the point
+  const Doubles n = (1.4426950408889634073599 * x + kInteger) - kInteger;
+  const Doubles r = x - n * 0.693145751953125 - n * 1.42860682030941723212e-6;
+  const Doubles r2 = r * r, r4 = r2 * r2, r8 = r4 * r4;
+  const Doubles e01 = 1.0 + r, e23 = 1.0 / 2.0 + r * (1.0 / 6.0);
+  const Doubles e45 = 1.0 / 24.0 + r * (1.0 / 120.0), e67 = 1.0 / 720.0 + r * (1.0 / 5040.0);
+  const Doubles e89 = 1.0 / 40320.0 + r * (1.0 / 362880.0), eab = 1.0 / 3628800.0 + r * (1.0 / 39916800.0);
+  const Doubles ecd = 1.0 / 479001600.0 + r * (1.0 / 6227020800.0);
+  const Doubles e = ((e01 + r2 * e23) + r4 * (e45 + r2 * e67)) + r8 * ((e89 + r2 * eab) + r4 * ecd);
+  const Doubles power = n + (kInteger + 1023.0);  // its last digits are the exponent of 2^n
+  x = e * reinterpret_cast<Doubles>(reinterpret_cast<Bits>(power) << 52);
+}
+
+// The exponents of kBlocks blocks from block b on, side by side; their largest goes into `largest`.
+template <int kWidth, std::size_t kBlocks>
+[[gnu::always_inline]] inline void exponents(const RuleBlocks& rules, int b, const double* u, double* phi,
+                                             Block<kWidth>& largest) {
+  const std::ptrdiff_t stride = kRuleBlock * rules.inputs;
+  const double *c = rules.centres + b * stride, *w = rules.inverse_widths + b * stride;
+  Block<kWidth> exponent[kBlocks];
+  for (auto& one : exponent) one.fill(0.0);
+  for (int i = 0; i < rules.inputs; ++i, c += kRuleBlock, w += kRuleBlock)
+    for (std::size_t k = 0; k < kBlocks; ++k) {
+      Block<kWidth> centre, inverse_width;
+      centre.load(c + static_cast<std::ptrdiff_t>(k) * stride);
+      inverse_width.load(w + static_cast<std::ptrdiff_t>(k) * stride);
+      for (std::size_t p = 0; p < Block<kWidth>::kParts; ++p) {
+        const auto distance = u[i] * inverse_width.part[p] - centre.part[p];
+        exponent[k].part[p] -= distance * distance;
+      }
+    }
+  for (std::size_t k = 0; k < kBlocks; ++k) {
+    for (std::size_t p = 0; p < Block<kWidth>::kParts; ++p)
+      largest.part[p] = largest.part[p] > exponent[k].part[p] ? largest.part[p] : exponent[k].part[p];
+    exponent[k].store(phi + (b + static_cast<int>(k)) * kRuleBlock);
+  }
+}
+
+// phi times a number, which is returned: the sum of them all. The largest of them is 1.
+template <int kWidth>
+[[gnu::always_inline]] inline double unscaled_strengths(const RuleBlocks& rules, const double* u, double* phi) {
+  Block<kWidth> largest, total;
+  largest.fill(-std::numeric_limits<double>::infinity());
+  int b = 0;
+  for (; b + 4 <= rules.blocks; b += 4) exponents<kWidth, 4>(rules, b, u, phi, largest);
+  for (; b < rules.blocks; ++b) exponents<kWidth, 1>(rules, b, u, phi, largest);
+  const double highest = largest.largest();
+  total.fill(0.0);
+  for (b = 0; b < rules.blocks; ++b) {
+    Block<kWidth> strength;
+    strength.load(phi + b * kRuleBlock);
+    for (std::size_t p = 0; p < Block<kWidth>::kParts; ++p) {
+      auto& part = strength.part[p];
+      part -= highest;
+      part = kLowestExponent > part ? typename Block<kWidth>::Doubles{} + kLowestExponent : part;
+      exponential<typename VectorOf<kWidth>::Doubles, typename VectorOf<kWidth>::Bits>(part);
+      total.part[p] += part;
+    }
+    strength.store(phi + b * kRuleBlock);
+  }
+  return total.sum();
+}
+
+// a' b (count).
+template <int kWidth>
+[[gnu::always_inline]] inline double dot(int count, const double* a, const double* b) {
+  Block<kWidth> total, x, y;
+  total.fill(0.0);
+  int j = 0;
+  for (; j + kRuleBlock <= count; j += kRuleBlock) {
+    x.load(a + j);
+    y.load(b + j);
+    for (std::size_t p = 0; p < Block<kWidth>::kParts; ++p) total.part[p] += x.part[p] * y.part[p];
+  }
+  double sum = total.sum();
+  for (; j < count; ++j) sum += a[j] * b[j];
+  return sum;
+}
+
+template <int kWidth>
+[[gnu::always_inline]] inline void means(const RuleTables& said, const double* phi, double scale, double* numbers,
+                                         double* matrix) {
+  const int n = said.n;
+  for (int c = 0; c < said.columns; ++c)
+    numbers[c] = scale * dot<kWidth>(said.rules, phi, said.numbers + c * said.rules);
+  for (int j = 0; j < n; ++j)
+    for (int i = j; i < n; ++i)
+      matrix[i + n * j] = matrix[j + n * i] =
+          scale * dot<kWidth>(said.rules, phi, said.matrices + (i + n * j) * said.rules);
+}
+
+template <int kWidth>
+[[gnu::always_inline]] inline void rule_strengths_loops(const RuleBlocks& rules, const double* u, double* phi) {
+  const double scale = 1.0 / unscaled_strengths<kWidth>(rules, u, phi);
+  for (int j = 0; j < rules.blocks * kRuleBlock; j += kRuleBlock) {
+    Block<kWidth> strength;
+    strength.load(phi + j);
+    for (auto& part : strength.part) part *= scale;
+    strength.store(phi + j);
+  }
+}
+
+template <int kWidth>
+[[gnu::always_inline]] inline void rule_means_loops(const RuleTables& said, const double* phi, double* numbers,
+                                                    double* matrix) {
+  means<kWidth>(said, phi, 1.0, numbers, matrix);
+}
+
+template <int kWidth>
+[[gnu::always_inline]] inline void rule_answer_loops(const RuleBlocks& rules, const RuleTables& said, const double* u,
+                                                     double* numbers, double* matrix) {
+  double phi[kMostRules];
+  const double total = unscaled_strengths<kWidth>(rules, u, phi);
+  means<kWidth>(said, phi, 1.0 / total, numbers, matrix);
 }
 
 }  // namespace
 
-TRUEBEARING_FOR_AVX2(rule_strengths, (const RuleBlocks& rules, const double* u, double* phi), (rules, u, phi))
+TRUEBEARING_FOR_WIDEST(rule_strengths, (const RuleBlocks& rules, const double* u, double* phi), (rules, u, phi))
+TRUEBEARING_FOR_WIDEST(rule_means, (const RuleTables& said, const double* phi, double* numbers, double* matrix),
+                       (said, phi, numbers, matrix))
+TRUEBEARING_FOR_WIDEST(rule_answer,
+                       (const RuleBlocks& rules, const RuleTables& said, const double* u, double* numbers,
+                        double* matrix),
+                       (rules, said, u, numbers, matrix))
 
 }  // namespace truebearing::kernels

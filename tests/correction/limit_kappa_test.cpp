@@ -129,6 +129,23 @@ TEST(LimitKappa, NothingPassesTheBound) {
   EXPECT_GT(moved, 0.3 * cases) << "three in four are hostile";
 }
 
+// Whatever the units of the components: the elimination does not scale them first.
+TEST(SafeDistance, IsExactToOneInABillionInAnyUnits) {
+  RandomStream random({.seed = 23}, StreamId::test);
+  int known = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const auto n = static_cast<Eigen::Index>(1 + random.index(6));
+    const BoundedMatrix P = random_covariance(random, n, k % 2 == 0 ? 2.0 : 140.0);
+    BoundedVector d(n);
+    for (Eigen::Index i = 0; i < n; ++i) d[i] = std::sqrt(P(i, i)) * random.normal();
+    const double distance = SafeDistance(P).of(d), exact = exact_distance(P, d, BoundedVector::Zero(n));
+    if (std::isinf(distance)) continue;
+    ++known;
+    EXPECT_NEAR(distance, exact, 1e-9 * exact) << k << "\n" << P;
+  }
+  EXPECT_GT(known, 1900);
+}
+
 // References of filters that were told tiny standard deviations: ill-conditioned, singular, and far below the last digit
 // of the estimate that they belong to. What is published is bounded in exact arithmetic, or it is the reference.
 TEST(WithinKappa, NothingThatIsPublishedPassesTheBound) {

@@ -10,10 +10,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <type_traits>
 
 #include "truebearing/core/covariance.hpp"
-#include "truebearing/core/with_count.hpp"
 #include "truebearing/correction/fuzzy_network.hpp"
 #include "truebearing/correction/interval_memory.hpp"
 
@@ -21,14 +19,10 @@ namespace truebearing {
 
 /// How far apart two estimates are, d (n), for what they claim, P_a and P_b (n x n): the root of d' (P_a + P_b)^-1 d.
 /// NaN where that has no value.
-inline double disagreement(const BoundedVector& d, const BoundedMatrix& P_a, const BoundedMatrix& P_b) {
-  double squared = 0.0;
-  with_count(static_cast<int>(d.size()), [&]<int N>(std::integral_constant<int, N>) {
-    using Matrix = Eigen::Map<const Eigen::Matrix<double, N, N>>;
-    squared = mahalanobis_squared(Matrix(P_a.data()) + Matrix(P_b.data()),
-                                  Eigen::Map<const Eigen::Matrix<double, N, 1>>(d.data()));
-  });
-  return std::sqrt(squared);
+template <typename DerivedD, typename DerivedA, typename DerivedB>
+double disagreement(const Eigen::MatrixBase<DerivedD>& d, const Eigen::MatrixBase<DerivedA>& P_a,
+                    const Eigen::MatrixBase<DerivedB>& P_b) {
+  return std::sqrt(mahalanobis_squared(P_a + P_b, d));
 }
 
 /// The intervals that were taught, of the last few of a track (interval_memory.hpp) the shortest and the longest, and the
@@ -66,7 +60,6 @@ struct BoxGate {
   /// g in [0, 1] for inputs (d), intervals and a disagreement: 1 inside the box, falling as exp(-excess^2 / 2) outside,
   /// the excess measured in edge widths; 0 where a number is not finite.
   double weight(const FuzzyNetwork::Inputs& inputs, const Intervals& found_intervals, double found_disagreement) const {
-    if (!inputs.allFinite()) return 0.0;
     double worst = intervals.excess(found_intervals);
     if (std::isfinite(largest_disagreement)) {
       if (!std::isfinite(found_disagreement)) return 0.0;
@@ -74,10 +67,13 @@ struct BoxGate {
           worst, (found_disagreement - largest_disagreement) / (disagreement_edge_fraction * largest_disagreement));
     }
     constexpr double kLeastWidth = 1e-6;  // of an input that was always the same, up to rounding
+    double unknown = 0.0;                 // NaN where an input is not finite
     for (Eigen::Index i = 0; i < low.size(); ++i) {
-      const double outside = std::max({low[i] - inputs[i], inputs[i] - high[i], 0.0});
+      const double outside = std::max(low[i] - inputs[i], inputs[i] - high[i]);
+      unknown += 0.0 * inputs[i];
       if (outside > 0.0) worst = std::max(worst, outside / (edge_fraction * std::max(high[i] - low[i], kLeastWidth)));
     }
+    if (std::isnan(unknown)) return 0.0;
     return worst > 0.0 ? std::exp(-0.5 * worst * worst) : 1.0;
   }
 };

@@ -9,24 +9,83 @@
 #include "truebearing/core/covariance.hpp"
 #include "truebearing/core/error.hpp"
 #include "truebearing/core/unfilled.hpp"
-#include "truebearing/core/with_count.hpp"
 #include "truebearing/correction/limit_kappa.hpp"
 
 namespace truebearing {
 namespace {
 
-// The reference's estimate at `step`, and nothing of what a tracker predicted, innovated or gained: the slot is one of
-// corrected records, whose blocks of that kind nobody fills.
-void begin_record(const StepRecord& step, const StepRecord& reference, StepRecord& corrected) {
+// Of N components, or of as many as a state may have where N is Eigen::Dynamic.
+template <int N>
+inline constexpr int kRoom = N > 0 ? N : kMaxDimension;
+template <int N>
+using StateVector = Eigen::Matrix<double, N, 1, 0, kRoom<N>, 1>;
+template <int N>
+using StateMatrix = Eigen::Matrix<double, N, N, 0, kRoom<N>, kRoom<N>>;
+
+// Calls body with the number of components as a constant, for states that are often corrected: of a line, of Lorenz' system,
+// of the plane and of space.
+template <typename Body>
+auto with_state_size(Eigen::Index n, const Body& body) {
+  switch (n) {
+    case 2:
+      return body(std::integral_constant<int, 2>{});
+    case 3:
+      return body(std::integral_constant<int, 3>{});
+    case 4:
+      return body(std::integral_constant<int, 4>{});
+    case 6:
+      return body(std::integral_constant<int, 6>{});
+    default:
+      return body(std::integral_constant<int, Eigen::Dynamic>{});
+  }
+}
+
+template <int N>
+auto of_size(const BoundedVector& x) {
+  return Eigen::Map<const StateVector<N>>(x.data(), x.size());
+}
+template <int N>
+auto of_size(const BoundedMatrix& P) {
+  return Eigen::Map<const StateMatrix<N>>(P.data(), P.rows(), P.cols());
+}
+template <typename Sized, typename Bounded>
+void store(const Sized& from, Bounded& to) {
+  to.resize(from.rows(), from.cols());
+  Eigen::Map<typename Sized::PlainObject>(to.data(), from.rows(), from.cols()) = from;
+}
+
+// What was measured and when, and nothing of what a tracker predicted, innovated or gained: the slot is one of corrected
+// records, whose blocks of that kind nobody fills.
+void begin_record(const StepRecord& step, StepRecord& corrected) {
   corrected.track = step.track;
   corrected.time_s = step.time_s;
   corrected.status = step.status;
   corrected.space = step.space;
   corrected.sensor = step.sensor;
   corrected.source = step.source;
-  corrected.x = reference.x;
-  corrected.P = reference.P;
   corrected.correction.emplace(Unfilled());
+}
+
+// True where P (lower half) is a covariance. One that is far from singular is seen at once: every pivot is a good part of
+// its variance.
+template <typename Matrix>
+bool is_covariance_of_state(const Matrix& P) {
+  constexpr double kLeastShare = 1e-9, kLargest = 1e100;  // whose squares are numbers
+  Matrix W = P;
+  const Eigen::Index n = P.rows();
+  bool definite = true;
+#pragma GCC unroll 8
+  for (Eigen::Index k = 0; k < n; ++k) {
+    definite &= (W(k, k) > kLeastShare * P(k, k)) & (P(k, k) < kLargest);
+    const double inverse = 1.0 / W(k, k);
+#pragma GCC unroll 8
+    for (Eigen::Index j = k + 1; j < n; ++j) {
+      const double factor = W(j, k) * inverse;
+#pragma GCC unroll 8
+      for (Eigen::Index i = j; i < n; ++i) W(i, j) -= factor * W(i, k);
+    }
+  }
+  return definite || is_covariance(P);
 }
 
 // What the weights g of what a correction says make of the covariances: a and b are the roots of g_i g_j and (1 - g_i)
@@ -44,35 +103,44 @@ struct Blend {
       }
   }
 
-  // Written as a change of P_reference: nothing to correct leaves the covariance as it is, to the bit. False where the
-  // result P is no covariance.
-  bool covariance(const BoundedMatrix& P_c, const BoundedMatrix& P_reference, const BoundedVector& d,
-                  BoundedMatrix& P) const {
-    const auto n = static_cast<int>(d.size());
-    bool valid = false;
+  // Written as a change of P_reference: nothing to correct leaves the covariance as it is, to the bit. Lower halves are
+  // read. False where the result P is no covariance.
+  template <typename SomeMatrix, typename OtherMatrix, typename Vector, typename Matrix>
+  bool covariance(const SomeMatrix& P_c, const OtherMatrix& P_reference, const Vector& d, Matrix& P) const {
+    const Eigen::Index n = d.size(), positions = n / 2;
     P.resize(n, n);
-    with_count(n, [&]<int N>(std::integral_constant<int, N>) {
-      const double *c = P_c.data(), *reference = P_reference.data();
-      Eigen::Matrix<double, N, N> blended;
-      for (int j = 0; j < N; ++j)
-        for (int i = 0; i < N; ++i, ++c, ++reference) {
-          const double a_ij = a[i >= N / 2][j >= N / 2], b_ij = b[i >= N / 2][j >= N / 2];
-          blended(i, j) = *reference + a_ij * (*c - *reference) - (1.0 - a_ij - b_ij) * *reference +
-                          a_ij * b_ij * d.data()[i] * d.data()[j];
-        }
-      valid = is_covariance(blended);
-      Eigen::Map<Eigen::Matrix<double, N, N>>(P.data()) = blended;
-    });
-    return valid;
+#pragma GCC unroll 8
+    for (Eigen::Index j = 0; j < n; ++j)
+#pragma GCC unroll 8
+      for (Eigen::Index i = j; i < n; ++i) {
+        const double a_ij = a[i >= positions][j >= positions], b_ij = b[i >= positions][j >= positions];
+        const double c = P_c(i, j), reference = P_reference(i, j);
+        P(i, j) = P(j, i) =
+            reference + a_ij * (c - reference) - (1.0 - a_ij - b_ij) * reference + a_ij * b_ij * d[i] * d[j];
+      }
+    return is_covariance_of_state(P);
   }
 };
 
-// The weights of the components of a state (n): g, times those of its positions and velocities.
-BoundedVector component_weights(double g, const Referee::Weights& w, Eigen::Index n) {
-  BoundedVector G(n);
-  G << BoundedVector::Constant(n / 2, g * w.position), BoundedVector::Constant(n - n / 2, g * w.velocity);
-  return G;
-}
+// Of the components of a state: g, times the weights of its positions and velocities.
+struct ComponentWeights {
+  double position;
+  double velocity;
+
+  ComponentWeights(double g, const Referee::Weights& w) : position(g * w.position), velocity(g * w.velocity) {}
+
+  template <typename Vector>
+  Vector times(const Vector& d) const {
+    Vector weighted = d;
+    for (Eigen::Index i = 0; i < d.size(); ++i) weighted[i] *= i < d.size() / 2 ? position : velocity;
+    return weighted;
+  }
+  double mean(Eigen::Index n) const {
+    if (position == velocity) return position;
+    const auto positions = static_cast<double>(n / 2), components = static_cast<double>(n);
+    return (positions * position + (components - positions) * velocity) / components;
+  }
+};
 
 }  // namespace
 
@@ -124,7 +192,9 @@ std::span<const StepRecord> Correction::correct(const Ensemble& ensemble) {
     accounts_[i].features.resize(0);
     CorrectionInputs::Records step = inputs_.records(ensemble, references[i].track);
     if (!step.complete()) {
-      begin_record(references[i], references[i], records_[i]);
+      begin_record(references[i], records_[i]);
+      records_[i].x = references[i].x;
+      records_[i].P = references[i].P;
       continue;
     }
     Track& track = track_of(references[i].track);
@@ -144,11 +214,11 @@ const StepRecord& Correction::trusted(const StepRecord& base, const StepRecord& 
   if (!fallback || fallback->status != reference.status || base.status != reference.status) return reference;
   track.handover.judge(base, *bounds_.referee);
   const BoundedVector d = reference.x - fallback->x;
-  const BoundedVector G = component_weights(1.0, track.handover.weights(*bounds_.referee), d.size());
-  const BoundedVector x = fallback->x + G.cwiseProduct(d);
-  const bool valid = Blend(G[0], G[G.size() - 1]).covariance(reference.P, fallback->P, d, trusted_.P);
+  const ComponentWeights G(1.0, track.handover.weights(*bounds_.referee));
+  const BoundedVector x = fallback->x + G.times(d);
+  const bool valid = Blend(G.position, G.velocity).covariance(reference.P, fallback->P, d, trusted_.P);
   if (!x.allFinite() || !valid) return reference;
-  handed_over_ = 1.0 - G.mean();
+  handed_over_ = 1.0 - G.mean(d.size());
   trusted_.x = x;
   trusted_.track = reference.track;
   trusted_.time_s = reference.time_s;
@@ -160,44 +230,68 @@ const StepRecord& Correction::trusted(const StepRecord& base, const StepRecord& 
 void Correction::correct_record(const CorrectionInputs::Records& step, Track& track, StepRecord& corrected,
                                 CorrectionAccount& account) {
   const StepRecord& base = *step.base;
-  const StepRecord& reference = *step.reference;
-  begin_record(base, reference, corrected);
-  corrected.correction->base_x = base.x;
-  corrected.correction->base_P = base.P;
+  begin_record(base, corrected);
   corrected.correction->handed_over = handed_over_;
-  if (!features_.allFinite() || !step.agree()) return;  // g = 0
+  with_state_size(base.x.size(), [&]<int N>(std::integral_constant<int, N>) {
+    store(of_size<N>(base.x), corrected.correction->base_x);
+    store(of_size<N>(base.P), corrected.correction->base_P);
+    const bool asked = features_.allFinite() && step.agree();
+    if (asked && correct_state<N>(step, track, corrected, account)) return;
+    corrected.x = step.reference->x;  // g = 0
+    corrected.P = step.reference->P;
+  });
+}
+
+// Of a state of N components. False where nothing is published: numbers of any size may overflow or cancel.
+template <int N>
+bool Correction::correct_state(const CorrectionInputs::Records& step, Track& track, StepRecord& corrected,
+                               CorrectionAccount& account) {
+  using Vector = StateVector<N>;
+  using Matrix = StateMatrix<N>;
+  const StepRecord& base = *step.base;
+  const StepRecord& reference = *step.reference;
+  const Vector x_base = of_size<N>(base.x), x_reference = of_size<N>(reference.x);
+  const auto P_reference = of_size<N>(reference.P);
 
   // What it remembers are the steps that used a measurement: one that used none leaves no trace.
-  memory_ = track.memory;
-  answer(model_->network, features_, memory_, answer_);
-  if (base.status == StepStatus::ok) track.memory = memory_;
+  const bool used = base.status == StepStatus::ok;
+  if (!used) memory_ = track.memory;
+  answer(model_->network, features_, used ? track.memory : memory_, answer_);
+
   const OutputUnits units = inputs_.units(track.extractor, base);
-  const BoundedVector wanted = base.x + units.state(answer_.y) - reference.x;
-  const BoundedMatrix P_c = units.in_frame(answer_.covariance(units.in_frame(step.source->P)));
+  Vector wanted = of_size<N>(answer_.y);
+  Matrix P_c = of_size<N>(step.source->P);
+  units.to_state(wanted);
+  wanted = x_base + wanted - x_reference;
+  units.own_covariance(answer_, P_c);
+
   const SafeDistance distance(reference.P);
-  const Limited limited = limit_kappa(distance, wanted, bounds_.kappa);
-  const BoundedVector& d = limited.d;
-  const double contradicts = gate_ ? disagreement(wanted, P_c, reference.P) : 0.0;
-  const double g = gate_ ? gate_->weight(features_, track.extractor.intervals(), contradicts) : 1.0;
-  const Referee::Weights w = bounds_.referee ? track.referee.weights(*bounds_.referee) : Referee::Weights{};
-  account = {features_, g, w, track.extractor.intervals(), contradicts, limited.wanted_sigmas};
-  const BoundedVector G = component_weights(g, w, reference.x.size());
+  const auto limited = limit_kappa<N>(distance, wanted, bounds_.kappa);
+  const Vector& d = limited.d;
+  account.features = features_;
+  account.intervals = track.extractor.intervals();
+  account.disagreement = gate_ ? disagreement(wanted, P_c, P_reference) : 0.0;
+  account.box = gate_ ? gate_->weight(features_, account.intervals, account.disagreement) : 1.0;
+  account.referee = bounds_.referee ? track.referee.weights(*bounds_.referee) : Referee::Weights{};
+  account.wanted_sigmas = limited.wanted_sigmas;
+  const ComponentWeights G(account.box, account.referee);
 
   // Where its parts have weights of their own, a correction may become longer than it was.
-  const bool apart = w.position != w.velocity;
-  const BoundedVector weighted =
-      apart ? limit_kappa(distance, G.cwiseProduct(d), bounds_.kappa).d : BoundedVector(g * w.position * d);
-  const BoundedVector x = within_kappa(reference.x, distance, weighted, bounds_.kappa);
-  if (bounds_.referee && base.status == StepStatus::ok) track.referee.remember(base, reference.x + d, reference, x);
+  const bool apart = G.position != G.velocity;
+  const Vector weighted = apart ? limit_kappa<N>(distance, G.times(d), bounds_.kappa).d : Vector(G.position * d);
+  const Vector x = within_kappa<N>(x_reference, distance, weighted, bounds_.kappa);
+  if (bounds_.referee && used) track.referee.remember(base, x_reference + d, reference, x);
 
-  BoundedMatrix P;
-  const bool valid = Blend(G[0], G[G.size() - 1]).covariance(P_c, reference.P, d, P);
-  if (!x.allFinite() || !valid) return;  // numbers of any size may overflow or cancel: g = 0
-  corrected.x = x;
-  corrected.P = P;
-  corrected.correction->gate = G.mean();
-  corrected.correction->limited = limited.limited;
-  corrected.correction->distance_sigmas = apart ? distance.of(weighted) : G[0] * limited.distance_sigmas;
+  Matrix P;
+  const bool valid = Blend(G.position, G.velocity).covariance(P_c, P_reference, d, P);
+  if (!x.allFinite() || !valid) return false;
+  store(x, corrected.x);
+  store(P, corrected.P);
+  CorrectionOutcome& outcome = *corrected.correction;
+  outcome.gate = G.mean(x.size());
+  outcome.limited = limited.limited;
+  outcome.distance_sigmas = apart ? distance.of<N>(weighted) : G.position * limited.distance_sigmas;
+  return true;
 }
 
 }  // namespace truebearing

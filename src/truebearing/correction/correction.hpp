@@ -68,6 +68,9 @@ class Correction {
                             Track& track);
   void correct_record(const CorrectionInputs::Records& step, Track& track, StepRecord& corrected,
                       CorrectionAccount& account);
+  template <int N>
+  bool correct_state(const CorrectionInputs::Records& step, Track& track, StepRecord& corrected,
+                     CorrectionAccount& account);
 
   std::shared_ptr<const CorrectionModel> model_;
   CorrectionBounds bounds_;

@@ -16,11 +16,6 @@ int member_index(const Ensemble& ensemble, const std::string& name, const StateS
   return index;
 }
 
-OutputUnits::OutputUnits(const FrameRotation& rotation, const StepRecord& base, bool in_sigma)
-    : rotation_(rotation), scale_(BoundedVector::Ones(base.x.size())) {
-  if (in_sigma) scale_ = rotation.covariance(base.P).diagonal().cwiseSqrt();
-}
-
 CorrectionInputs::CorrectionInputs(const CorrectionDesign& design, const StateSpace& space, const Ensemble& ensemble)
     : base_(member_index(ensemble, design.base, space)),
       reference_(member_index(ensemble, design.reference, space)),

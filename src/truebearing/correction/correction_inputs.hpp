@@ -12,14 +12,23 @@
 namespace truebearing {
 
 /// The frame and the units of a network's output at one step: T, the rotation into the frame, and D, 1 or the base's
-/// standard deviations there.
+/// standard deviations there. Of states of n components, in vectors of any type that has a size.
 class OutputUnits {
  public:
-  /// base: its record of the step.
-  OutputUnits(const FrameRotation& rotation, const StepRecord& base, bool in_sigma);
+  /// base: its record of the step; it outlives this.
+  OutputUnits(const FrameRotation& rotation, const StepRecord& base, bool in_sigma)
+      : rotation_(rotation), base_(base), in_sigma_(in_sigma) {}
 
-  /// Differences of states (n) that the network's output (n) stands for: T' D y.
-  BoundedVector state(const BoundedVector& output) const { return rotation_.vector(scale_.cwiseProduct(output)); }
+  /// Makes of a network's output y (n) the difference of states that it stands for: T' D y.
+  template <typename Vector>
+  void to_state(Vector& y) const {
+    if (in_sigma_) y = y.cwiseProduct(scale());
+    rotation_.turn(y);
+  }
+  BoundedVector state(BoundedVector y) const {
+    to_state(y);
+    return y;
+  }
   /// The way back: D^-1 T d.
   BoundedVector output(const BoundedVector& d) const { return inverse().cwiseProduct(rotation_.vector(d)); }
   /// A covariance of states (n x n) in the frame, and in the units of the output.
@@ -28,11 +37,31 @@ class OutputUnits {
     return inverse().asDiagonal() * in_frame(P) * inverse().asDiagonal();
   }
 
+  /// Makes of the covariance P of `covariance_of` the correction's own, as NetworkAnswer::covariance() does in the frame.
+  template <typename Matrix>
+  void own_covariance(const NetworkAnswer& answer, Matrix& P) const {
+    if (answer.moments.size() == 0) {
+      P *= answer.inflation;
+      return;
+    }
+    const auto sigma = rotation_.variances(P).cwiseSqrt().eval();
+    const double* const moments = answer.moments.data();
+    const Eigen::Index n = P.rows();
+    for (Eigen::Index j = 0; j < n; ++j)
+      for (Eigen::Index i = 0; i < n; ++i) P(i, j) = sigma[i] * sigma[j] * moments[i + n * j];
+    rotation_.turn_covariance(P);
+  }
+
  private:
-  BoundedVector inverse() const { return scale_.cwiseInverse(); }
+  BoundedVector scale() const {  // D (n)
+    if (!in_sigma_) return BoundedVector::Ones(base_.x.size());
+    return rotation_.variances(base_.P).cwiseSqrt();
+  }
+  BoundedVector inverse() const { return scale().cwiseInverse(); }
 
   const FrameRotation& rotation_;
-  BoundedVector scale_;  // D (n)
+  const StepRecord& base_;
+  bool in_sigma_;
 };
 
 /// Index of the member of that name; throws InputError where there is none, or one of another state space.

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -37,7 +38,8 @@ inline Eigen::Vector2d level_velocity(const BoundedVector& x) {
   return x.segment<2>(x.size() / 2);
 }
 
-/// The rotation into a frame, for one estimate.
+/// The rotation into a frame, for one estimate: [u'; s'] with u along and s = (u_y, -u_x) to starboard, symmetric and its
+/// own inverse.
 class FrameRotation {
  public:
   FrameRotation() = default;
@@ -48,61 +50,107 @@ class FrameRotation {
     if (!rotates_) return;
     Eigen::Vector2d direction = frame == Frame::track ? level_velocity(x) : x.head<2>();
     if (frame == Frame::sight && sensor) direction -= sensor->position_m;
-    const double length = direction.stableNorm();
-    along_ = length > 0.0 ? Eigen::Vector2d(direction / length) : Eigen::Vector2d(0.0, 1.0);
+    double squared = direction.squaredNorm();
+    if (!(squared > 1e-200 && squared < 1e200)) {  // or a square may have lost its digits
+      const double length = direction.stableNorm();
+      if (!(length > 0.0)) return;
+      direction /= length;
+      squared = direction.squaredNorm();
+    }
+    along_ = direction / std::sqrt(squared);
   }
 
-  /// A state, or a position (the first half of one), in the frame. The way back is the same.
+  /// Turns a state, or a position (the first half of one), into the frame. The way back is the same.
+  template <typename Vector>
+  void turn(Vector& v) const {
+    if (!rotates_) return;
+    const Eigen::Index n = v.size(), d = dimensions(n);
+    const double x = along_.x(), y = along_.y();
+#pragma GCC unroll 8
+    for (Eigen::Index i = 0; i + 1 < n; i += d) {
+      const double first = v[i], second = v[i + 1];
+      v[i] = x * first + y * second;
+      v[i + 1] = y * first - x * second;
+    }
+  }
+  /// A copy that is turned.
   template <typename Derived>
   BoundedVector vector(const Eigen::MatrixBase<Derived>& x) const {
     BoundedVector turned = x;
-    if (rotates_)
-      for (Eigen::Index i = 0, d = dimensions(x.size()); i < turned.size(); i += d)
-        turned.segment<2>(i) = turn(turned.segment<2>(i));
+    turn(turned);
     return turned;
   }
   /// One component of vector(x).
   template <typename Derived>
   double component(const Eigen::MatrixBase<Derived>& x, Eigen::Index i) const {
-    const Eigen::Index place = i % dimensions(x.size()), first = i - place;
+    const Eigen::Index place = dimensions(x.size()) == 3 ? i % 3 : i % 2, first = i - place;
     if (!rotates_ || place == 2) return x[i];
     return place == 0 ? along_.x() * x[first] + along_.y() * x[first + 1]
                       : along_.y() * x[first] - along_.x() * x[first + 1];
   }
-  /// A covariance of states in the frame, and back.
-  BoundedMatrix covariance(const BoundedMatrix& P) const {
-    if (!rotates_) return P;
+  /// Turns a covariance of states, of which the lower half counts in the end.
+  template <typename Matrix>
+  void turn_covariance(Matrix& P) const {
+    if (!rotates_) return;
     const Eigen::Index n = P.rows(), d = dimensions(n);
-    BoundedMatrix turned(n, n);
-    const double *from = P.data(), x = along_.x(), y = along_.y();
-    double* to = turned.data();
-    for (Eigen::Index j = 0; j < n; ++j)  // the rows of each column, then the columns of each row
-      for (Eigen::Index i = 0; i < n; i += d) {
-        const double* p = from + i + j * n;
-        double* q = to + i + j * n;
-        q[0] = x * p[0] + y * p[1];
-        q[1] = y * p[0] - x * p[1];
-        if (d == 3) q[2] = p[2];
-      }
-    for (Eigen::Index j = 0; j < n; j += d)
-      for (Eigen::Index i = 0; i < n; ++i) {
-        double *p = to + i + j * n, *q = p + n;
+    const double x = along_.x(), y = along_.y();
+    double* const data = P.data();
+    // The rows of each column, then the columns of each row.
+#pragma GCC unroll 8
+    for (Eigen::Index j = 0; j < n; ++j)
+#pragma GCC unroll 8
+      for (Eigen::Index i = 0; i + 1 < n; i += d) {
+        double *p = data + i + j * n, *q = p + 1;
         const double along = x * *p + y * *q, across = y * *p - x * *q;
         *p = along;
         *q = across;
       }
+#pragma GCC unroll 8
+    for (Eigen::Index j = 0; j + 1 < n; j += d)
+#pragma GCC unroll 8
+      for (Eigen::Index i = j; i < n; ++i) {
+        double *p = data + i + j * n, *q = p + n;
+        const double along = x * *p + y * *q, across = y * *p - x * *q;
+        *p = along;
+        *q = across;
+      }
+#pragma GCC unroll 8
+    for (Eigen::Index j = 1; j < n; ++j)
+#pragma GCC unroll 8
+      for (Eigen::Index i = 0; i < j; ++i) data[i + j * n] = data[j + i * n];
+  }
+  /// A copy that is turned.
+  BoundedMatrix covariance(const BoundedMatrix& P) const {
+    BoundedMatrix turned = P;
+    turn_covariance(turned);
     return turned;
   }
-  bool rotates() const { return rotates_; }
-  const Eigen::Vector2d& along() const { return along_; }
+  /// Its diagonal.
+  template <typename Matrix>
+  auto variances(const Matrix& P) const {
+    Eigen::Matrix<double, Matrix::RowsAtCompileTime, 1, 0, Matrix::MaxRowsAtCompileTime, 1> turned = P.diagonal();
+    if (!rotates_) return turned;
+    const Eigen::Index n = P.rows(), d = dimensions(n);
+    const double x = along_.x(), y = along_.y();
+#pragma GCC unroll 8
+    for (Eigen::Index i = 0; i + 1 < n; i += d) {
+      const double a = P(i, i), b = P(i + 1, i), c = P(i + 1, i + 1);
+      turned[i] = x * (x * a + y * b) + y * (x * b + y * c);
+      turned[i + 1] = y * (y * a - x * b) - x * (y * b - x * c);
+    }
+    return turned;
+  }
+  bool rotates() const {
+    return rotates_;
+  }
+  const Eigen::Vector2d& along() const {
+    return along_;
+  }
 
  private:
   // Of a vector of the plane (2 or 4 components) or of space (3 or 6).
-  static Eigen::Index dimensions(Eigen::Index size) { return size % 3 == 0 ? 3 : 2; }
-
-  // [u'; s'] with u along and s = (u_y, -u_x) to starboard: symmetric and its own inverse.
-  Eigen::Vector2d turn(const Eigen::Vector2d& p) const {
-    return {along_.x() * p.x() + along_.y() * p.y(), along_.y() * p.x() - along_.x() * p.y()};
+  static Eigen::Index dimensions(Eigen::Index size) {
+    return size % 3 == 0 ? 3 : 2;
   }
 
   bool rotates_ = false;

@@ -13,7 +13,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 
 #include "truebearing/tracker/step_record.hpp"
@@ -40,23 +39,28 @@ class Referee {
 
   /// Judges the estimates of the last steps by the measured position in the base's record of this one. Call once per
   /// step, before remember(). A step that used no measurement leaves no trace.
-  void judge(const StepRecord& base, const RefereeOptions& options) {
-    if (base.status != StepStatus::ok || !base.innovation) return;
-    const BoundedVector& z = base.innovation->z;
-    const Eigen::Index m = base.x.size() / 2;
-    if (z.size() != m) return;
-    judge_position(base, z, options);
-    judge_velocity(base, z, options);
-  }
+  void judge(const StepRecord& base, const RefereeOptions& options);
 
   /// What the next measurements will be held against, of a step that used one: the corrected estimate before any
-  /// weight, the reference's record, and what was published.
-  void remember(const StepRecord& base, const BoundedVector& corrected, const StepRecord& reference,
-                const BoundedVector& published) {
-    const Eigen::Index m = published.size() / 2;
+  /// weight, the reference's record, and what was published. Vectors of any type that has a size.
+  template <typename Corrected, typename Published>
+  void remember(const StepRecord& base, const Corrected& corrected, const StepRecord& reference,
+                const Published& published) {
+    const Eigen::Index n = published.size(), m = n / 2;
     if (!base.innovation || base.innovation->z.size() != m) return;
-    estimates_[steps_++ % kKept] = {base.time_s, base.innovation->z, corrected,
-                                    reference.x, published,          reference.P.diagonal().tail(m).sum()};
+    Estimates& now = estimates_[steps_++ % kKept];
+    now.time_s = base.time_s;
+    now.states = n;
+    now.velocity_variance = 0.0;
+    for (Eigen::Index i = 0; i < m; ++i) {
+      now.z[i] = base.innovation->z[i];
+      now.velocity_variance += reference.P(n - m + i, n - m + i);
+    }
+    for (Eigen::Index i = 0; i < n; ++i) {
+      now.corrected[i] = corrected[i];
+      now.reference[i] = reference.x[i];
+      now.published[i] = published[i];
+    }
   }
 
   Weights weights(const RefereeOptions& options) const {
@@ -72,10 +76,11 @@ class Referee {
   };
   struct Estimates {
     double time_s = 0.0;
-    BoundedVector z;  // measured then
-    BoundedVector corrected;
-    BoundedVector reference;
-    BoundedVector published;
+    Eigen::Index states = 0;           // n, of which the first m = n / 2 are positions, the last m velocities
+    double z[kMaxDimension / 2] = {};  // measured then
+    double corrected[kMaxDimension] = {};
+    double reference[kMaxDimension] = {};
+    double published[kMaxDimension] = {};
     double velocity_variance = 0.0;
   };
 
@@ -91,50 +96,11 @@ class Referee {
     averages.reference += weight * (reference - averages.reference);
     averages.started = true;
   }
-
-  void judge_position(const StepRecord& base, const BoundedVector& z, const RefereeOptions& options) {
-    const Estimates* last = ago(1);
-    const Eigen::Index m = z.size();
-    if (!last || last->published.size() != 2 * m || !(base.time_s > last->time_s)) return;
-    const double dt_s = base.time_s - last->time_s;
-    const double claimed = base.innovation->S.trace() + dt_s * dt_s * last->velocity_variance;
-    const auto squared_error = [&](const BoundedVector& x) {
-      return (z - x.head(m) - dt_s * last->published.tail(m)).squaredNorm() / claimed;
-    };
-    take(position_, squared_error(last->corrected), squared_error(last->reference), options.alpha);
-  }
-
-  void judge_velocity(const StepRecord& base, const BoundedVector& z, const RefereeOptions& options) {
-    const Eigen::Index m = z.size();
-    // Each parabola counts by how much of what differs there is the estimate's own error, as far as is claimed.
-    std::array<double, kHalfWidths.size()> told{}, corrected{}, reference{};
-    double all_told = 0.0;
-    for (std::size_t i = 0; i < kHalfWidths.size(); ++i) {
-      const Estimates* then = ago(kHalfWidths[i]);
-      const Estimates* before = ago(2 * kHalfWidths[i]);
-      if (!before || before->z.size() != m || then->z.size() != m) break;
-      const double h1 = then->time_s - before->time_s, h2 = base.time_s - then->time_s;
-      if (!(h1 > 0.0) || !(h2 > 0.0)) break;
-      // The derivative of Lagrange's parabola at its middle point.
-      const double w1 = -h2 / (h1 * (h1 + h2)), w2 = h1 / (h2 * (h1 + h2)), w0 = -w1 - w2;
-      const BoundedVector slope = w1 * before->z + w0 * then->z + w2 * z;
-      const double claimed = then->velocity_variance + (w1 * w1 + w0 * w0 + w2 * w2) * base.innovation->S.trace();
-      told[i] = then->velocity_variance / claimed;
-      corrected[i] = (slope - then->corrected.tail(m)).squaredNorm() / claimed;
-      reference[i] = (slope - then->reference.tail(m)).squaredNorm() / claimed;
-      all_told += told[i];
-    }
-    if (!(all_told > 0.0)) return;
-    for (std::size_t i = 0; i < kHalfWidths.size() && told[i] > 0.0; ++i)
-      take(velocity_, corrected[i], reference[i], options.alpha * told[i] / all_told);
-  }
-
-  static double weight(const Averages& averages, const RefereeOptions& options) {
-    if (!averages.started) return 1.0;
-    const double ratio = averages.corrected / averages.reference;
-    const double weight = 1.0 / (1.0 + std::exp((ratio - options.tolerance) / options.edge));
-    return std::isfinite(weight) ? weight : 0.0;
-  }
+  template <int M>
+  void judge_position(const StepRecord& base, const RefereeOptions& options);
+  template <int M>
+  void judge_velocity(const StepRecord& base, const RefereeOptions& options);
+  static double weight(const Averages& averages, const RefereeOptions& options);
 
   std::array<Estimates, kKept> estimates_;  // step k in place k % kKept
   std::size_t steps_ = 0;

@@ -66,15 +66,43 @@ void check(const FeatureSpec& feature, const StateSpace& space, const StateSpace
 // does; where the components are not correlated the two are the same. Up, which does not turn, is by itself.
 BoundedVector normalised(const Innovation& innovation, Frame frame) {
   const BoundedMatrix& S = innovation.S;
-  BoundedVector e = innovation.nu.cwiseQuotient(S.diagonal().cwiseSqrt());
-  if (frame == Frame::state || S.rows() < 2 || S.rows() > 3 || S(0, 1) == 0.0) return e;
+  const Eigen::Index m = S.rows();
+  const bool turns = frame != Frame::state && (m == 2 || m == 3) && S(0, 1) != 0.0;
+  BoundedVector e(m);
+  for (Eigen::Index i = turns ? 2 : 0; i < m; ++i) e[i] = innovation.nu[i] / std::sqrt(S(i, i));
+  if (!turns) return e;
   // S^1/2 = (S + s I) / t with s = sqrt(det S), t = sqrt(tr S + 2 s).
   const double s = std::sqrt(std::max(S(0, 0) * S(1, 1) - S(0, 1) * S(1, 0), 0.0));
   const double t = std::sqrt(S(0, 0) + S(1, 1) + 2.0 * s);
   const double a = S(0, 0) + s, b = S(0, 1), c = S(1, 1) + s, scale = t / (a * c - b * b);
-  e.head<2>() << scale * (c * innovation.nu[0] - b * innovation.nu[1]),
-      scale * (a * innovation.nu[1] - b * innovation.nu[0]);
+  e[0] = scale * (c * innovation.nu[0] - b * innovation.nu[1]);
+  e[1] = scale * (a * innovation.nu[1] - b * innovation.nu[0]);
   return e;
+}
+
+// Whether a feature of this kind has a memory.
+bool remembers(FeatureKind kind) {
+  switch (kind) {
+    case FeatureKind::residual:
+    case FeatureKind::prediction_difference:
+    case FeatureKind::innovation:
+    case FeatureKind::innovation_average:
+    case FeatureKind::log_nis_average:
+    case FeatureKind::log_mean_nis:
+    case FeatureKind::log_interval:
+    case FeatureKind::frame_turn:
+    case FeatureKind::speed_change:
+    case FeatureKind::velocity_change:
+      return true;
+    default:
+      return false;
+  }
+}
+
+// Whether such a feature is a component of a vector that is remembered.
+bool is_remembered(FeatureKind kind) {
+  return kind == FeatureKind::residual || kind == FeatureKind::prediction_difference ||
+         kind == FeatureKind::innovation || kind == FeatureKind::innovation_average;
 }
 
 constexpr double kLeastRange_m = 1.0;
@@ -103,10 +131,25 @@ FeatureExtractor::FeatureExtractor(std::vector<FeatureSpec> features, const Stat
       if (known == companions_.end()) companions_.push_back(feature.companion);
     }
     wants_sigma_ |= feature.scale_is_sigma || feature.kind == FeatureKind::log_sigma;
+    wants_gain_ |= feature.kind == FeatureKind::gain;
+    const bool is_average = feature.kind == FeatureKind::innovation_average;
     terms_.push_back({feature.kind, std::max(components.component_index(feature.component), 0), companion,
-                      feature.alpha, feature.offset, feature.scale, feature.scale_is_sigma, feature.mode - 1,
-                      feature.sensor - 1});
+                      memory_of(feature.kind, companion, feature.alpha, feature.mode - 1), feature.offset,
+                      feature.scale, feature.scale_is_sigma, feature.mode - 1, feature.sensor - 1,
+                      is_average ? std::sqrt(feature.alpha / (2.0 - feature.alpha)) : 1.0,
+                      is_remembered(feature.kind)});
   }
+}
+
+// The place of what a feature of that kind remembers, which several may share.
+std::size_t FeatureExtractor::memory_of(FeatureKind kind, int companion, double alpha, int mode) {
+  if (!remembers(kind)) return 0;
+  const auto known = std::find_if(memories_.begin(), memories_.end(), [&](const Memory& memory) {
+    return memory.kind == kind && memory.companion == companion && memory.alpha == alpha && memory.mode == mode;
+  });
+  const auto place = static_cast<std::size_t>(known - memories_.begin());
+  if (known == memories_.end()) memories_.push_back({kind, companion, alpha, mode});
+  return place;
 }
 
 void FeatureExtractor::reset() {
@@ -120,9 +163,9 @@ void FeatureExtractor::begin_track(const StepRecord& base) {
   steps_ = 0.0;
   gain_.resize(0, 0);
   interval_memory_.reset();
-  for (Term& term : terms_) {
-    term.memory = BoundedVector::Zero(1);
-    term.used = 0.0;
+  for (Memory& memory : memories_) {
+    memory.value = BoundedVector::Zero(1);
+    memory.used = 0.0;
   }
 }
 
@@ -131,90 +174,93 @@ void FeatureExtractor::extract(const StepRecord& base, std::span<const StepRecor
   if (base.track != track_) begin_track(base);
   interval_memory_.take(base);
   if (base.status == StepStatus::ok) steps_ += 1.0;
-  if (base.status == StepStatus::ok && base.gain) gain_ = *base.gain;
+  if (wants_gain_ && base.status == StepStatus::ok && base.gain) gain_ = *base.gain;
   rotation_ = FrameRotation(frame_, base.x, base.sensor);
-  if (wants_sigma_) sigma_ = rotation_.covariance(base.P).diagonal().cwiseSqrt();
-  features.resize(size());
+  if (wants_sigma_) sigma_ = rotation_.variances(base.P).cwiseSqrt();
   normalised_of_ = nullptr;
-  for (int i = 0; i < size(); ++i) {
-    Term& term = terms_[static_cast<std::size_t>(i)];
-    const StepRecord* companion = term.companion < 0 ? nullptr : companions[static_cast<std::size_t>(term.companion)];
-    if (term.companion < 0)
-      remember(term, base);
-    else if (companion)
-      remember(term, *companion);
-    features[i] = value(term, base, companion);
+  const auto record_of = [&](int companion) {
+    return companion < 0 ? &base : companions[static_cast<std::size_t>(companion)];
+  };
+  for (Memory& memory : memories_) {
+    if (const StepRecord* record = record_of(memory.companion)) remember(memory, *record);
+    if (is_remembered(memory.kind)) turn(memory);
+  }
+  features.resize(size());
+  double* feature = features.data();
+  for (const Term& term : terms_) {
+    const StepRecord* companion = term.companion < 0 ? nullptr : record_of(term.companion);
+    const bool is_known = term.companion < 0 || (companion && companion->x.size() == base.x.size());
+    if (!is_known)
+      *feature++ = kNaN;
+    else if (term.is_remembered)
+      *feature++ = memories_[term.memory].in_frame[static_cast<std::size_t>(term.component)] / term.deviation;
+    else
+      *feature++ = value(term, base, companion);
   }
 }
 
+// Of the step's rotation.
+void FeatureExtractor::turn(Memory& memory) const {
+  const Eigen::Index m = memory.value.size();
+  memory.in_frame.fill(0.0);
+  if (rotation_.rotates() && m < 2) return;
+  Eigen::Map<BoundedVector> turned(memory.in_frame.data(), m);
+  for (Eigen::Index i = 0; i < m; ++i) turned[i] = memory.value[i];
+  rotation_.turn(turned);
+}
+
 // Takes from a step in which the measurement was used what later steps want to know of it.
-void FeatureExtractor::remember(Term& term, const StepRecord& record) {
+void FeatureExtractor::remember(Memory& memory, const StepRecord& record) {
   if (record.status != StepStatus::ok || !record.innovation) return;
   const Innovation& innovation = *record.innovation;
-  BoundedVector& memory = term.memory;
-  term.used += 1.0;
-  switch (term.kind) {
+  BoundedVector& value = memory.value;
+  memory.used += 1.0;
+  switch (memory.kind) {
     case FeatureKind::residual:
-      memory = innovation.z - record.x.head(innovation.z.size());
+      value = innovation.z - record.x.head(innovation.z.size());
       break;
     case FeatureKind::prediction_difference:
-      if (record.prediction) memory = record.prediction->x - record.x;
+      if (record.prediction) value = record.prediction->x - record.x;
       break;
     case FeatureKind::innovation:
     case FeatureKind::innovation_average: {
-      const double alpha = term.kind == FeatureKind::innovation ? 1.0 : term.alpha;
+      const double alpha = memory.kind == FeatureKind::innovation ? 1.0 : memory.alpha;
       const BoundedVector& e = normalised_innovation(record);
-      if (memory.size() != e.size()) memory = BoundedVector::Zero(e.size());
-      for (Eigen::Index i = 0; i < memory.size(); ++i)
-        memory[i] = alpha == 1.0 ? e[i] : memory[i] + alpha * (e[i] - memory[i]);
+      if (value.size() != e.size()) value = BoundedVector::Zero(e.size());
+      for (Eigen::Index i = 0; i < value.size(); ++i)
+        value[i] = alpha == 1.0 ? e[i] : value[i] + alpha * (e[i] - value[i]);
       break;
     }
     case FeatureKind::log_nis_average:
-      memory[0] += term.alpha * (innovation.nis - memory[0]);
+      value[0] += memory.alpha * (innovation.nis - value[0]);
       break;
     case FeatureKind::log_mean_nis:
-      memory[0] += (innovation.nis - memory[0]) / term.used;
+      value[0] += (innovation.nis - value[0]) / memory.used;
       break;
     case FeatureKind::log_interval: {  // the times of the last two
-      const double before_s = memory[0];
-      memory = Eigen::Vector2d(record.time_s, before_s);
+      const double before_s = value[0];
+      value = Eigen::Vector2d(record.time_s, before_s);
       break;
     }
     case FeatureKind::frame_turn: {  // the velocities at the last two
       const Eigen::Vector2d now = level_velocity(record.x);
-      const Eigen::Vector2d before = memory.size() == 4 ? Eigen::Vector2d(memory.head<2>()) : now;
-      memory.resize(4);
-      memory << now, before;
+      const Eigen::Vector2d before = value.size() == 4 ? Eigen::Vector2d(value.head<2>()) : now;
+      value.resize(4);
+      value << now, before;
       break;
     }
     case FeatureKind::speed_change:
     case FeatureKind::velocity_change: {
       BoundedVector now = level_velocity(record.x);
-      if (term.kind != FeatureKind::velocity_change) now = BoundedVector::Constant(1, now.norm());
-      const bool told = record.mode_probabilities && term.mode < record.mode_probabilities->size();
-      const double stays = told ? (*record.mode_probabilities)[term.mode] : 0.0;
-      if (term.used == 1.0) memory = now;
-      memory += term.alpha * stays * (now - memory);
+      if (memory.kind != FeatureKind::velocity_change) now = BoundedVector::Constant(1, now.norm());
+      const bool told = record.mode_probabilities && memory.mode < record.mode_probabilities->size();
+      const double stays = told ? (*record.mode_probabilities)[memory.mode] : 0.0;
+      if (memory.used == 1.0) value = now;
+      value += memory.alpha * stays * (now - value);
       break;
     }
-    case FeatureKind::log_step:
-    case FeatureKind::gain:
-    case FeatureKind::estimate:
-    case FeatureKind::companion_difference:
-    case FeatureKind::log_sigma:
-    case FeatureKind::log_speed:
-    case FeatureKind::aspect_cosine:
-    case FeatureKind::aspect_sine:
-    case FeatureKind::mode_probability:
-    case FeatureKind::log_range:
-    case FeatureKind::log_first_range:
-    case FeatureKind::log_time:
-    case FeatureKind::bearing_rate:
-    case FeatureKind::own_velocity:
-    case FeatureKind::neighbour_closeness:
-    case FeatureKind::neighbour_difference:
-    case FeatureKind::sensor:
-      break;
+    default:
+      break;  // remembers()
   }
 }
 
@@ -228,16 +274,11 @@ const BoundedVector& FeatureExtractor::normalised_innovation(const StepRecord& r
 
 double FeatureExtractor::value(const Term& term, const StepRecord& base, const StepRecord* companion) const {
   constexpr double kLeastSpeed_mps = 1e-3, kLeastTime_s = 1.0, kLeastInterval_s = 1e-3;
-  if (term.companion >= 0 && !companion) return kNaN;
   const StepRecord& record = companion ? *companion : base;
-  if (record.x.size() != base.x.size()) return kNaN;
   const int c = term.component;
-  // A component of a vector of the state's own frame, in the frame; before the first used measurement it is zero.
-  const auto in_frame = [&](const BoundedVector& v) {
-    if (rotation_.rotates() && v.size() < 2) return 0.0;
-    return c < v.size() ? rotation_.component(v, c) : 0.0;
-  };
-  const SensorState own = base.sensor.value_or(SensorState{});
+  const Memory* const memory = memories_.data() + term.memory;
+  const auto in_frame = [&](const BoundedVector& v) { return c < v.size() ? rotation_.component(v, c) : 0.0; };
+  const auto own = [&] { return base.sensor.value_or(SensorState{}); };
   const auto scaled = [&](double value) { return value / (term.scale_is_sigma ? sigma_[c] : term.scale); };
   switch (term.kind) {
     case FeatureKind::log_step:
@@ -251,23 +292,22 @@ double FeatureExtractor::value(const Term& term, const StepRecord& base, const S
     case FeatureKind::residual:
     case FeatureKind::prediction_difference:
     case FeatureKind::innovation:
-      return in_frame(term.memory);
     case FeatureKind::innovation_average:
-      return in_frame(term.memory) / std::sqrt(term.alpha / (2.0 - term.alpha));
+      break;  // is_remembered()
     case FeatureKind::log_nis_average:
     case FeatureKind::log_mean_nis:
-      return std::log(term.offset + term.memory[0]);
+      return std::log(term.offset + memory->value[0]);
     case FeatureKind::estimate:
       return scaled(in_frame(record.x));
     case FeatureKind::companion_difference:
       return scaled(in_frame(BoundedVector(record.x - base.x)));
     case FeatureKind::log_sigma:
-      return std::log(companion ? std::sqrt(rotation_.covariance(record.P)(c, c)) : sigma_[c]);
+      return std::log(companion ? std::sqrt(rotation_.variances(record.P)[c]) : sigma_[c]);
     case FeatureKind::log_speed:
       return std::log(std::max(level_velocity(record.x).norm(), kLeastSpeed_mps));
     case FeatureKind::aspect_cosine:
     case FeatureKind::aspect_sine: {
-      const Eigen::Vector2d sight = base.x.head<2>() - own.position_m;
+      const Eigen::Vector2d sight = base.x.head<2>() - own().position_m;
       const Eigen::Vector2d v = level_velocity(base.x);
       const double size = sight.norm() * v.norm();
       if (!(size > 0.0)) return 0.0;
@@ -278,24 +318,25 @@ double FeatureExtractor::value(const Term& term, const StepRecord& base, const S
       if (!record.mode_probabilities || term.mode >= record.mode_probabilities->size()) return kNaN;
       return (*record.mode_probabilities)[term.mode];
     case FeatureKind::log_range:
-      return log_range(record.x, own);
+      return log_range(record.x, own());
     case FeatureKind::log_first_range:
       return log_first_range_;
     case FeatureKind::log_time:
       return std::log(std::max(base.time_s - began_s_, kLeastTime_s));
     case FeatureKind::bearing_rate: {
-      const Eigen::Vector2d d = record.x.head<2>() - own.position_m, v = level_velocity(record.x) - own.velocity_mps;
+      const Eigen::Vector2d d = record.x.head<2>() - own().position_m,
+                            v = level_velocity(record.x) - own().velocity_mps;
       return (v.x() * d.y() - v.y() * d.x()) / std::max(d.squaredNorm(), kLeastRange_m * kLeastRange_m);
     }
     case FeatureKind::own_velocity:
-      return rotation_.component(own.velocity_mps, c % (base.x.size() / 2)) / term.scale;
+      return rotation_.component(own().velocity_mps, c % (base.x.size() / 2)) / term.scale;
     case FeatureKind::speed_change:
-      if (term.used == 0.0) return 0.0;
+      if (memory->used == 0.0) return 0.0;
       return std::log(std::max(level_velocity(record.x).norm(), kLeastSpeed_mps) /
-                      std::max(term.memory[0], kLeastSpeed_mps));
+                      std::max(memory->value[0], kLeastSpeed_mps));
     case FeatureKind::velocity_change:
-      if (term.used == 0.0) return 0.0;
-      return rotation_.component(BoundedVector(level_velocity(record.x) - term.memory), c % (base.x.size() / 2)) /
+      if (memory->used == 0.0) return 0.0;
+      return rotation_.component(BoundedVector(level_velocity(record.x) - memory->value), c % (base.x.size() / 2)) /
              term.scale;
     case FeatureKind::neighbour_closeness:
       return base.neighbour ? base.neighbour->closeness : 0.0;
@@ -305,13 +346,14 @@ double FeatureExtractor::value(const Term& term, const StepRecord& base, const S
       return base.source == term.sensor ? 1.0 : 0.0;
     case FeatureKind::log_interval: {
       const bool uses = base.status == StepStatus::ok && base.innovation;
-      const double last_s = term.used > (uses ? 1.0 : 0.0) ? term.memory[uses ? 1 : 0] : began_s_;
+      const double last_s = memory->used > (uses ? 1.0 : 0.0) ? memory->value[uses ? 1 : 0] : began_s_;
       return std::log(std::max(base.time_s - last_s, kLeastInterval_s));
     }
     case FeatureKind::frame_turn: {
-      if (term.memory.size() != 4) return 0.0;
+      if (memory->value.size() != 4) return 0.0;
       const bool uses = base.status == StepStatus::ok && base.innovation;
-      const Eigen::Vector2d now = level_velocity(base.x), then = uses ? term.memory.tail<2>() : term.memory.head<2>();
+      const Eigen::Vector2d now = level_velocity(base.x),
+                            then = uses ? memory->value.tail<2>() : memory->value.head<2>();
       return std::atan2(now.x() * then.y() - now.y() * then.x(), now.dot(then));
     }
   }

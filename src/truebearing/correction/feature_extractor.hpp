@@ -3,6 +3,7 @@
 // tracking share this one class, so that both see the same numbers.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <span>
 #include <string>
@@ -43,21 +44,33 @@ class FeatureExtractor {
   const FrameRotation& rotation() const { return rotation_; }
 
  private:
+  // What only a used measurement gives, or an average of it; features that ask for the same share one.
+  struct Memory {
+    FeatureKind kind;
+    int companion;  // -1: none
+    double alpha;
+    int mode;
+    BoundedVector value = BoundedVector::Zero(1);     // a number, or a vector in the state's own frame
+    double used = 0.0;                                // steps in which the measurement was used
+    std::array<double, kMaxDimension> in_frame = {};  // of a vector; zero before the first used measurement
+  };
   struct Term {
     FeatureKind kind;
     int component;
-    int companion;  // -1: none
-    double alpha, offset, scale;
+    int companion;       // -1: none
+    std::size_t memory;  // its place in memories_, where the kind has one
+    double offset, scale;
     bool scale_is_sigma;
     int mode;
     int sensor;
-    // What only a used measurement gives, or an average of it: a number, or a vector in the state's own frame.
-    BoundedVector memory = BoundedVector::Zero(1);
-    double used = 0.0;  // steps in which the measurement was used
+    double deviation;    // of an average, if what is averaged is white; else 1
+    bool is_remembered;  // a component of what is remembered, and nothing else
   };
 
+  std::size_t memory_of(FeatureKind kind, int companion, double alpha, int mode);
   void begin_track(const StepRecord& base);
-  void remember(Term& term, const StepRecord& record);
+  void remember(Memory& memory, const StepRecord& record);
+  void turn(Memory& memory) const;
   const BoundedVector& normalised_innovation(const StepRecord& record);
   double value(const Term& term, const StepRecord& base, const StepRecord* companion) const;
 
@@ -65,7 +78,9 @@ class FeatureExtractor {
   std::vector<FeatureSpec> features_;
   std::vector<std::string> companions_;
   std::vector<Term> terms_;
+  std::vector<Memory> memories_;
   bool wants_sigma_ = false;
+  bool wants_gain_ = false;
   FrameRotation rotation_;  // of this step
   BoundedVector sigma_;     // the base's standard deviations in the frame, where a feature wants them
   BoundedMatrix gain_;      // of the last used measurement

@@ -30,12 +30,13 @@ class IntervalMemory {
     if (!uses) return;
     used_s_ = record.time_s;
     if (std::isnan(since_s)) return;
-    std::shift_right(last_s_.begin(), last_s_.end(), 1);
-    last_s_.front() = since_s;
+    last_s_ = {since_s, last_s_[0], last_s_[1]};
     count_ = std::min(count_ + 1, last_s_.size());
-    const auto [shortest, longest] = std::minmax_element(last_s_.begin(), last_s_.begin() + count_);
-    intervals_.shortest_s = *shortest;
-    intervals_.longest_s = *longest;
+    intervals_.shortest_s = intervals_.longest_s = since_s;
+    for (std::size_t i = 1; i < count_; ++i) {
+      intervals_.shortest_s = std::min(intervals_.shortest_s, last_s_[i]);
+      intervals_.longest_s = std::max(intervals_.longest_s, last_s_[i]);
+    }
   }
 
   const Intervals& intervals() const { return intervals_; }

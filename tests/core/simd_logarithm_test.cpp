@@ -16,14 +16,15 @@ void expect_that_of_the_library(double smallest, double largest) {
   RandomStream random({1, Role::evaluation, 0}, StreamId::test);
   using Vector = VectorOf<kWidth>;
   for (int trial = 0; trial < 5000; ++trial) {
-    double x[kWidth], logarithms[kWidth];
+    constexpr std::size_t kCount = kWidth;
+    double x[kCount], logarithms[kCount];
     for (double& each : x) each = std::exp(random.uniform(std::log(smallest), std::log(largest)));
     x[0] = trial == 0 ? 1.0 : trial == 1 ? smallest : trial == 2 ? largest : x[0];
     typename Vector::Doubles of;
     Vector::load(x, of);
     logarithm<kWidth>(of);
     Vector::store(of, logarithms);
-    for (int i = 0; i < kWidth; ++i)
+    for (std::size_t i = 0; i < kCount; ++i)
       ASSERT_NEAR(logarithms[i], std::log(x[i]), 2.3e-16 * std::abs(std::log(x[i]))) << x[i];
   }
 }

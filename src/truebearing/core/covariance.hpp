@@ -48,10 +48,11 @@ struct Elimination {
   Elimination(Covariance P, Vector d) {
     for (Eigen::Index k = 0; k < P.rows(); ++k) {
       const double pivot = P(k, k) > 0.0 ? P(k, k) : std::numeric_limits<double>::quiet_NaN();
-      squared += d(k) * d(k) / pivot;
+      const double inverse = 1.0 / pivot;
+      squared += d(k) * d(k) * inverse;
       log_determinant += std::log(pivot);
       for (Eigen::Index i = k + 1; i < P.rows(); ++i) {
-        const double factor = P(i, k) / pivot;
+        const double factor = P(i, k) * inverse;
         d(i) -= factor * d(k);
         for (Eigen::Index j = k + 1; j <= i; ++j) P(i, j) -= factor * P(j, k);
       }

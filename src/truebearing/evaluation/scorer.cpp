@@ -2,6 +2,7 @@
 #include "truebearing/evaluation/scorer.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <type_traits>
 #include <utility>
 
@@ -25,11 +26,13 @@ template <int N>
 Distance distance(const BoundedVector& truth, const StepRecord& record, const int* in_truth, const int* in_estimate) {
   Eigen::Matrix<double, N, 1> d;
   Eigen::Matrix<double, N, N> P;
+  double squares = 0.0;
   for (int j = 0; j < N; ++j) {
     d[j] = truth[in_truth[j]] - record.x[in_estimate[j]];
-    for (int i = 0; i < N; ++i) P(i, j) = record.P(in_estimate[i], in_estimate[j]);
+    squares += d[j] * d[j];
+    for (int i = j; i < N; ++i) P(i, j) = record.P(in_estimate[i], in_estimate[j]);
   }
-  return {d.norm(), mahalanobis_squared(P, d)};
+  return {std::sqrt(squares), mahalanobis_squared(P, d)};
 }
 
 Distance distance(const BoundedVector& truth, const StepRecord& record, const std::vector<int>& in_truth,

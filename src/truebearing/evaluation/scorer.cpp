@@ -8,7 +8,6 @@
 
 #include "truebearing/core/chi_square.hpp"
 #include "truebearing/core/constants.hpp"
-#include "truebearing/core/covariance.hpp"
 #include "truebearing/core/error.hpp"
 #include "truebearing/core/with_count.hpp"
 #include "truebearing/evaluation/run_score.hpp"
@@ -24,15 +23,29 @@ struct Distance {
 
 template <int N>
 Distance distance(const BoundedVector& truth, const StepRecord& record, const int* in_truth, const int* in_estimate) {
-  Eigen::Matrix<double, N, 1> d;
-  Eigen::Matrix<double, N, N> P;
-  double squares = 0.0;
-  for (int j = 0; j < N; ++j) {
+  constexpr auto n = static_cast<std::size_t>(N);
+  // Plain arrays, and by elimination as in mahalanobis_squared(): this is done three times for every step of every tracker.
+  double d[n], P[n][n], squares = 0.0, squared_by_P = 0.0;
+  bool valid = true;
+  for (std::size_t j = 0; j < n; ++j) {
     d[j] = truth[in_truth[j]] - record.x[in_estimate[j]];
     squares += d[j] * d[j];
-    for (int i = j; i < N; ++i) P(i, j) = record.P(in_estimate[i], in_estimate[j]);
+    for (std::size_t i = j; i < n; ++i) P[i][j] = record.P(in_estimate[i], in_estimate[j]);
   }
-  return {std::sqrt(squares), mahalanobis_squared(P, d)};
+#pragma GCC unroll 10
+  for (std::size_t k = 0; k < n; ++k) {
+    valid &= P[k][k] > 0.0;
+    const double inverse = 1.0 / P[k][k];
+    squared_by_P += d[k] * d[k] * inverse;
+#pragma GCC unroll 10
+    for (std::size_t i = k + 1; i < n; ++i) {
+      const double factor = P[i][k] * inverse;
+      d[i] -= factor * d[k];
+#pragma GCC unroll 10
+      for (std::size_t j = k + 1; j <= i; ++j) P[i][j] -= factor * P[j][k];
+    }
+  }
+  return {std::sqrt(squares), valid ? squared_by_P : kNaN};
 }
 
 Distance distance(const BoundedVector& truth, const StepRecord& record, const std::vector<int>& in_truth,

@@ -57,12 +57,13 @@ void InteractingMultipleModel::begin(const double* x, const double* P) {
 
 // Equations (11.6.6-7) to (-10).
 StepStatus InteractingMultipleModel::predict(double dt_s) {
-  const ModeMatrix Pi = chain_.over(dt_s);
+  if (dt_s != chain_.period_s) over_dt_ = chain_.over(dt_s);
+  const ModeMatrix& Pi = dt_s == chain_.period_s ? chain_.transition : over_dt_;
   const Eigen::Index r = Pi.rows();
   ModeVector c = ModeVector::Zero(r);
-  ModeMatrix mixing = Pi;
+  ModeMatrix mixing(r, r);
   for (Eigen::Index j = 0; j < r; ++j) {
-    for (Eigen::Index i = 0; i < r; ++i) c[j] += mixing(i, j) *= probabilities_[i];
+    for (Eigen::Index i = 0; i < r; ++i) c[j] += mixing(i, j) = Pi(i, j) * probabilities_[i];
     if (c[j] > 0.0)
       for (Eigen::Index i = 0; i < r; ++i) mixing(i, j) /= c[j];
     else

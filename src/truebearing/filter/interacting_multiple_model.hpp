@@ -47,6 +47,7 @@ class InteractingMultipleModel final : public TrackedState {
   MarkovChain chain_;
   ModeVector probabilities_;  // mu
   ModeVector predicted_;      // c of the last prediction
+  ModeMatrix over_dt_;        // Pi over the last interval that was not the period of the chain
   // Mean and covariance of the mixture.
   mutable BoundedVector x_;
   mutable BoundedMatrix P_;

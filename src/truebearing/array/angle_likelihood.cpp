@@ -6,10 +6,13 @@
 #include <numbers>
 
 #include "truebearing/array/angle_likelihood_kernels.hpp"
+#include "truebearing/array/column_product.hpp"
 #include "truebearing/core/angle.hpp"
 
 namespace truebearing {
 namespace {
+
+static_assert(kernels::kMostSignals == kMaxSignals);
 
 // Twice the log likelihood that a signal adds, with Ns snapshots: a' R^-1 R_hat R^-1 a is `found`, a' R^-1 a
 // `expected`, R without the signal.

@@ -5,12 +5,15 @@
 #include <cstddef>
 #include <numbers>
 
+#include "truebearing/array/column_product.hpp"
 #include "truebearing/core/simd_sine.hpp"
 #include "truebearing/core/simd_width.hpp"
 #include "truebearing/core/with_count.hpp"
 
 namespace truebearing::kernels {
 namespace {
+
+constexpr int kMostLanes = padded_to_widest(kMostSignals);
 
 // Registers that sums are kept in at once: few enough for the processor's.
 template <int kWidth>
@@ -109,7 +112,7 @@ template <int kWidth, int kN>
     const double pivot = C_k[k], inverse = 1.0 / pivot;
     if (!(pivot > 0.0)) return;
     det *= pivot;
-    double factor[16];  // column k over the pivot
+    double factor[kMostLanes];  // column k over the pivot
     for (int i = 0; i < N; i += kWidth) {
       Doubles column;
       Vector::load(C_k + i, column);
@@ -242,7 +245,7 @@ template <int kWidth>
   using Vector = VectorOf<kWidth>;
   using Doubles = typename Vector::Doubles;
   for (int j = 0; j < s.N; ++j) {
-    double mirrored[16];  // row j of dRa
+    double mirrored[kMostLanes];  // row j of dRa
     for (int i = 0; i < s.N; ++i) mirrored[i] = s.dRa[i * s.lanes + j];
     for (int i = s.N; i < s.lanes; ++i) mirrored[i] = 0.0;
     for (int i = 0; i < s.N; i += kWidth) {

@@ -168,8 +168,9 @@ void train_motions(const Study& study, const std::vector<std::string>& names, co
                    const WorkflowOptions& options) {
   if (is_first(options.ranks))
     for (std::size_t i = 0; i < names.size(); ++i) write_motion(outputs[i], train_motion(study, names[i], options));
-  // From here on all read what the first has written.
-  if (!names.empty()) check_ranks(options.ranks, study.input_files(), "");
+  if (names.empty() || !options.ranks) return;
+  options.ranks->gather_all({});  // from here on all read what the first has written
+  check_ranks(options.ranks, study.input_files(), "");
 }
 
 void keep_checkpoints(const Study& study, const std::vector<std::string>& names,

@@ -83,12 +83,25 @@ cmp <(grep -v '"ns_per_step"' "$scratch/one.json") <(grep -v '"ns_per_step"' "$s
 two_hosts "$program" tune "$scratch/none.toml" >"$scratch/said" 2>&1 && fail "status 0 without a study"
 (($(grep -c '^truebearing:' "$scratch/said") == 1)) || { cat "$scratch/said" >&2; fail "not one line on a missing study"; }
 
-# Studies that are long at work: they tune, teach and train for more than ten seconds.
+# Studies of other numbers, beside the scenarios and models that they name.
 repository=$(dirname "$(realpath "$0")")/../..
 mkdir -p "$scratch/data/studies"
 ln -s "$(realpath "$repository/data/scenarios")" "$scratch/data/scenarios"
-ln -s "$(realpath "$repository/models")" "$scratch/models"
-long_study() { sed -E "$2" "$study" >"$scratch/data/studies/$1.toml"; }
+cp -r "$repository/models" "$scratch/models"
+studies=$scratch/data/studies
+
+# A motion that is learned is written before filters with it are corrected: all ranks read it then.
+sed -E 's/^(runs|iterations) = .*/\1 = 20/' "$repository/data/studies/lorenz_mismatch.toml" >"$studies/motion.toml"
+train=("$program" train "$studies/motion.toml" --tracker learned --tracker nfnn --threads 1 --quiet)
+timed "${train[@]}"
+cp -r "$scratch/models" "$scratch/models_of_one"
+cp -r "$repository/models/." "$scratch/models"
+timed two_hosts "${train[@]}"
+diff -r "$scratch/models_of_one" "$scratch/models" || fail "other bytes with a learned motion"
+cmp -s "$repository/models/lorenz_mismatch.learned.json" "$scratch/models/lorenz_mismatch.learned.json" && fail "no motion was learned"
+
+# They tune, teach and train for more than ten seconds.
+long_study() { sed -E "$2" "$study" >"$studies/$1.toml"; }
 long_study tunes '/^\[tuning\]/,/^\[/s/^runs = .*/runs = 300000/'
 long_study teaches '/^\[trackers.nfnn.training\]/,$s/^runs = .*/runs = 300000/'
 long_study trains '/^\[trackers.nfnn.training\]/,$s/^iterations = .*/iterations = 100000/'
@@ -117,7 +130,6 @@ kill_rank_on_b() {
   done
 }
 cut_wire() { ip -n "$b" link set wire down; for pid in $(ip netns pids "$b"); do kill -KILL "$pid"; done; }
-studies=$scratch/data/studies
 ends_well kill_rank_on_b compare "$study" --runs 100000000 --json "$scratch/long.made"
 ends_well kill_rank_on_b tune "$studies/tunes.toml" -o "$scratch/long.made"
 ends_well kill_rank_on_b train "$studies/teaches.toml" --tracker nfnn -o "$scratch/long.made"

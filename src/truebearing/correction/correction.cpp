@@ -76,7 +76,8 @@ bool is_covariance_of_state(const Matrix& P) {
   bool definite = true;
 #pragma GCC unroll 8
   for (Eigen::Index k = 0; k < n; ++k) {
-    definite &= (W(k, k) > kLeastShare * P(k, k)) & (P(k, k) < kLargest);
+    definite &= W(k, k) > kLeastShare * P(k, k);
+    definite &= P(k, k) < kLargest;
     const double inverse = 1.0 / W(k, k);
 #pragma GCC unroll 8
     for (Eigen::Index j = k + 1; j < n; ++j) {
@@ -252,6 +253,9 @@ bool Correction::correct_state(const CorrectionInputs::Records& step, Track& tra
   const StepRecord& reference = *step.reference;
   const Vector x_base = of_size<N>(base.x), x_reference = of_size<N>(reference.x);
   const auto P_reference = of_size<N>(reference.P);
+  // What does not wait for the network comes before it.
+  const SafeDistance distance(reference.P);
+  account.referee = bounds_.referee ? track.referee.weights(*bounds_.referee) : Referee::Weights{};
 
   // What it remembers are the steps that used a measurement: one that used none leaves no trace.
   const bool used = base.status == StepStatus::ok;
@@ -265,14 +269,12 @@ bool Correction::correct_state(const CorrectionInputs::Records& step, Track& tra
   wanted = x_base + wanted - x_reference;
   units.own_covariance(answer_, P_c);
 
-  const SafeDistance distance(reference.P);
   const auto limited = limit_kappa<N>(distance, wanted, bounds_.kappa);
   const Vector& d = limited.d;
   account.features = features_;
   account.intervals = track.extractor.intervals();
   account.disagreement = gate_ ? disagreement(wanted, P_c, P_reference) : 0.0;
   account.box = gate_ ? gate_->weight(features_, account.intervals, account.disagreement) : 1.0;
-  account.referee = bounds_.referee ? track.referee.weights(*bounds_.referee) : Referee::Weights{};
   account.wanted_sigmas = limited.wanted_sigmas;
   const ComponentWeights G(account.box, account.referee);
 

@@ -80,29 +80,17 @@ BoundedVector normalised(const Innovation& innovation, Frame frame) {
   return e;
 }
 
-// Whether a feature of this kind has a memory.
-bool remembers(FeatureKind kind) {
-  switch (kind) {
-    case FeatureKind::residual:
-    case FeatureKind::prediction_difference:
-    case FeatureKind::innovation:
-    case FeatureKind::innovation_average:
-    case FeatureKind::log_nis_average:
-    case FeatureKind::log_mean_nis:
-    case FeatureKind::log_interval:
-    case FeatureKind::frame_turn:
-    case FeatureKind::speed_change:
-    case FeatureKind::velocity_change:
-      return true;
-    default:
-      return false;
-  }
-}
-
 // Whether such a feature is a component of a vector that is remembered.
 bool is_remembered(FeatureKind kind) {
   return kind == FeatureKind::residual || kind == FeatureKind::prediction_difference ||
          kind == FeatureKind::innovation || kind == FeatureKind::innovation_average;
+}
+
+// Whether a feature of this kind has a memory.
+bool remembers(FeatureKind kind) {
+  constexpr std::array kOthers{FeatureKind::log_nis_average, FeatureKind::log_mean_nis, FeatureKind::log_interval,
+                               FeatureKind::frame_turn,      FeatureKind::speed_change, FeatureKind::velocity_change};
+  return is_remembered(kind) || std::find(kOthers.begin(), kOthers.end(), kind) != kOthers.end();
 }
 
 constexpr double kLeastRange_m = 1.0;

@@ -124,32 +124,54 @@ template <int kWidth>
   return total.sum();
 }
 
-// a' b (count).
+// scale times the products of phi (rules) with four columns at a time, of which `columns` count.
 template <int kWidth>
-[[gnu::always_inline]] inline double dot(int count, const double* a, const double* b) {
-  Block<kWidth> total, x, y;
-  total.fill(0.0);
-  int j = 0;
-  for (; j + kRuleBlock <= count; j += kRuleBlock) {
-    x.load(a + j);
-    y.load(b + j);
-    for (std::size_t p = 0; p < Block<kWidth>::kParts; ++p) total.part[p] += x.part[p] * y.part[p];
+[[gnu::always_inline]] inline void means_of(int rules, int columns, const double* phi, const double* table,
+                                            double scale, double* mean) {
+  constexpr int kTogether = 4;
+  using Four = VectorOf<kTogether>::Doubles;
+  for (int c = 0; c < columns; c += kTogether) {
+    const double* column[kTogether];
+    for (int k = 0; k < kTogether; ++k) column[k] = table + std::min(c + k, columns - 1) * rules;
+    Block<kWidth> total[kTogether], strength, said;
+    for (auto& one : total) one.fill(0.0);
+    int j = 0;
+    for (; j + kRuleBlock <= rules; j += kRuleBlock) {
+      strength.load(phi + j);
+      for (int k = 0; k < kTogether; ++k) {
+        said.load(column[k] + j);
+        for (std::size_t p = 0; p < Block<kWidth>::kParts; ++p) total[k].part[p] += strength.part[p] * said.part[p];
+      }
+    }
+    // The four sums side by side.
+    Four sums[kTogether];
+    for (int k = 0; k < kTogether; ++k) {
+      Four high;
+      total[k].split(sums[k], high);
+      sums[k] += high;
+    }
+    const Four ab =
+        __builtin_shufflevector(sums[0], sums[1], 0, 4, 2, 6) + __builtin_shufflevector(sums[0], sums[1], 1, 5, 3, 7);
+    const Four cd =
+        __builtin_shufflevector(sums[2], sums[3], 0, 4, 2, 6) + __builtin_shufflevector(sums[2], sums[3], 1, 5, 3, 7);
+    Four all = __builtin_shufflevector(ab, cd, 0, 1, 4, 5) + __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
+    for (; j < rules; ++j) all += phi[j] * Four{column[0][j], column[1][j], column[2][j], column[3][j]};
+    all *= scale;
+    if (c + kTogether <= columns)
+      VectorOf<kTogether>::store(all, mean + c);
+    else
+      for (int k = 0; c + k < columns; ++k) mean[c + k] = all[k];
   }
-  double sum = total.sum();
-  for (; j < count; ++j) sum += a[j] * b[j];
-  return sum;
 }
 
 template <int kWidth>
 [[gnu::always_inline]] inline void means(const RuleTables& said, const double* phi, double scale, double* numbers,
                                          double* matrix) {
   const int n = said.n;
-  for (int c = 0; c < said.columns; ++c)
-    numbers[c] = scale * dot<kWidth>(said.rules, phi, said.numbers + c * said.rules);
-  for (int j = 0; j < n; ++j)
-    for (int i = j; i < n; ++i)
-      matrix[i + n * j] = matrix[j + n * i] =
-          scale * dot<kWidth>(said.rules, phi, said.matrices + (i + n * j) * said.rules);
+  means_of<kWidth>(said.rules, said.columns, phi, said.numbers, scale, numbers);
+  means_of<kWidth>(said.rules, n * n, phi, said.matrices, scale, matrix);
+  for (int j = 1; j < n; ++j)
+    for (int i = 0; i < j; ++i) matrix[i + n * j] = matrix[j + n * i];
 }
 
 template <int kWidth>

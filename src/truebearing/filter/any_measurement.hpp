@@ -81,7 +81,8 @@ class ErasedMeasurement final : public SizedMeasurement<Model::kMeasurements> {
   void set(const Model& model, const Vector& value) {
     model_ = model;
     this->z = value;
-    this->R = model.R();
+    const typename SizedMeasurement<M>::Covariance variances = model.R();
+    for (int i = 0; i < M * M; ++i) this->R.data()[i] = variances.data()[i];  // not by pairs what was written one by one
   }
 
   Vector h(const double* x) const override { return model_->h(state(x)); }

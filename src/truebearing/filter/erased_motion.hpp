@@ -35,6 +35,7 @@ class ErasedMotion final : public SizedMotion<Model::kStates> {
   Matrix Q(double dt_s) const override { return model_.Q(dt_s); }
 
   StepStatus carry(double dt_s, State& x, Matrix& P) const override {
+    const Matrix Q = model_.Q(dt_s);  // first: it is written number by number, and read by pairs
     const Matrix F = jacobian(x, dt_s);
     State new_x;
     if constexpr (LinearMotionModel<Model>)
@@ -42,7 +43,7 @@ class ErasedMotion final : public SizedMotion<Model::kStates> {
     else
       new_x = model_.f(x, dt_s);
     Matrix new_P = P;
-    const bool valid = detail::CovarianceForm::predict<N, double>(F, model_.Q(dt_s), new_P);
+    const bool valid = detail::CovarianceForm::predict<N, double>(F, Q, new_P);
     return commit(valid, new_x, new_P, x, P);
   }
 

@@ -79,6 +79,7 @@ int command_line(int argc, const char* const* argv) {
   add_smooth(all);
   add_compare(all);
   add_merge(all);
+  add_rare(all);
   add_report(all);
   add_check(all);
   add_rules(all);

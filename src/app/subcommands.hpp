@@ -15,6 +15,7 @@ void add_track(const Subcommands& all);
 void add_smooth(const Subcommands& all);
 void add_compare(const Subcommands& all);
 void add_merge(const Subcommands& all);
+void add_rare(const Subcommands& all);
 void add_report(const Subcommands& all);
 void add_check(const Subcommands& all);
 void add_rules(const Subcommands& all);

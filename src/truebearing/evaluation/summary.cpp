@@ -8,25 +8,9 @@
 #include <utility>
 
 #include "truebearing/core/constants.hpp"
+#include "truebearing/evaluation/loss_score.hpp"
 
 namespace truebearing {
-namespace {
-
-// Is the last error of any target beyond its threshold?
-bool is_lost(const RunScore& score, const Scorer& scorer, const ScoringRule& rule) {
-  for (const auto& [name, threshold] : rule.loss_thresholds) {
-    const std::optional<std::size_t> q = scorer.quantity(name);
-    if (!q) continue;
-    for (std::size_t target = 0; target < score.targets; ++target) {
-      const std::span errors = std::span(score.error[*q]).subspan(target * score.steps(), score.steps());
-      const auto last = std::find_if(errors.rbegin(), errors.rend(), [](double e) { return !std::isnan(e); });
-      if (last == errors.rend() || *last > threshold) return true;
-    }
-  }
-  return false;
-}
-
-}  // namespace
 
 SquaredErrors squared_errors(const RunScore& score, std::size_t quantity) {
   SquaredErrors total;
@@ -98,7 +82,7 @@ void SummaryTally::add(const RunScore& run) {
   corrected_steps_ += run.corrected;
   gate_sum_ += run.gate_sum;
   limited_ += run.gate_limited;
-  lost_ += is_lost(run, scorer_, rule_) ? 1.0 : 0.0;
+  lost_ += loss_score(run, scorer_, rule_) > 1.0 ? 1.0 : 0.0;
   runs_ += 1.0;
 }
 

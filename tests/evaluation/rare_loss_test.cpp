@@ -66,6 +66,26 @@ TEST(RareLoss, IsThatOfANormalErrorFromOneInTenToOneInAMillion) {
   }
 }
 
+// Intervals of two standard errors hold what is true in most of twenty seeds, and shorter ones do not.
+TEST(RareLoss, HasAnHonestStandardErrorAndNoBias) {
+  constexpr double kSigmas = 4.8916;
+  int covered = 0, covered_by_a_sixth = 0;
+  std::vector<double> all;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const RareLoss loss = rare_loss(raw(), measured_line(), lost_beyond(kSigmas * kSigma),
+                                    {.seed = seed, .draws = 500, .repetitions = 12, .threads = 2, .progress = {}});
+    const double off = std::abs(loss.loss_rate.value - normal_beyond(kSigmas)) / loss.loss_rate.se;
+    covered += off < 2.0;
+    covered_by_a_sixth += off < 2.0 / 6.0;
+    all.insert(all.end(), loss.repetitions.begin(), loss.repetitions.end());
+  }
+  EXPECT_GE(covered, 16);
+  EXPECT_LT(covered_by_a_sixth, 13);
+  const auto [mean, se] = mean_of(all);
+  EXPECT_LT(se, 0.15 * mean);
+  EXPECT_NEAR(mean, normal_beyond(kSigmas), 3.0 * se);
+}
+
 TEST(RareLoss, OfAFilterAgreesWithPlainRuns) {
   Ensemble ensemble;
   testing::RadarFilter radar;

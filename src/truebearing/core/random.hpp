@@ -59,6 +59,8 @@ class RandomStream {
       has_spare_ = false;
       return spare_;
     }
+    if (next_ == block_.size()) refill();
+    if (has_source_) tell_of_normals();
     const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
     const double angle = 2.0 * std::numbers::pi * uniform();
     spare_ = radius * std::sin(angle);
@@ -69,11 +71,14 @@ class RandomStream {
  private:
   /// The next block of the stream (random.cpp, which alone sees the generator).
   void refill();
+  /// Where the words come from elsewhere (random_source.hpp): that the next two become normals.
+  void tell_of_normals();
 
   std::array<std::uint64_t, 2> key_;
   std::array<std::uint64_t, 4> counter_;
   std::array<std::uint64_t, 4> block_{};
   unsigned next_ = 4;
+  bool has_source_ = false;
   bool has_spare_ = false;
   double spare_ = 0.0;
 };

@@ -24,6 +24,9 @@ class RandomSource {
   /// Block `number`, from 0, of a stream, whose generator has given `generated`. A stream that is begun again asks
   /// again. Streams that this itself draws from are the generator's.
   virtual RandomBlock block(const RandomStreamName& stream, std::uint64_t number, const RandomBlock& generated) = 0;
+  /// Word `first` of a stream, counted from 0, and the one behind it are about to become two normals
+  /// (RandomStream::normal()).
+  virtual void normals(const RandomStreamName& stream, std::uint64_t first) = 0;
 };
 
 /// While it lives, the streams of this thread take their words from there.

@@ -22,9 +22,8 @@ namespace {
 constexpr std::size_t kOneIn = 10;       // of the pilot's runs at a level is beyond the next
 constexpr std::size_t kMostLevels = 12;  // to 1e-12
 constexpr double kWantedShare = 0.44;    // of moves that are taken (Papaioannou et al. 2015)
-// Of the words that move, by the kind of a move; each kind has its own beta. All of them: of runs of a dozen words a move
-// of a sixteenth mostly moves none.
-constexpr std::array<double, 1> kShares{1.0};
+// Of moves that take words as the run has read them. The others reach runs that read otherwise.
+constexpr double kAsRead = 0.75;
 constexpr double kFirstBeta = 0.6;
 constexpr double kLeastBeta = 1e-3;
 constexpr double kGain = 0.1;                                // of the logarithm of beta by the wanted share
@@ -112,7 +111,7 @@ class Beyond {
   std::size_t lost_ = 0;
 };
 
-using Betas = std::array<double, kShares.size()>;
+using Betas = std::array<double, 2>;  // of moves one by one, and as read
 
 struct Moves {
   Betas betas;
@@ -121,11 +120,12 @@ struct Moves {
 
   // The end of a chain after a move of any kind.
   void move(ScoredRun& end, double level, Runs& runs, RandomStream& stream) {
-    const std::size_t kind = stream.index(kShares.size());
-    ScoredRun next = runs.moved(end, {kShares[kind], betas[kind]}, stream);
-    const bool takes = next.score > level;
+    const bool as_read = stream.uniform() < kAsRead;
+    double& beta = betas[as_read];
+    ScoredRun next = runs.moved(end, {as_read, beta}, stream);
+    const bool takes = next.score > level && (!as_read || next.words->reads_alike(*end.words));
     if (takes) end = std::move(next);
-    if (follow) betas[kind] = std::clamp(betas[kind] * std::exp(kGain * (takes - kWantedShare)), kLeastBeta, 1.0);
+    if (follow) beta = std::clamp(beta * std::exp(kGain * (takes - kWantedShare)), kLeastBeta, 1.0);
     taken += takes;
     ++tried;
   }
@@ -174,7 +174,7 @@ class Climber {
   Ladder pilot(const std::string& name, const std::function<void(std::size_t levels)>& told) {
     Ladder ladder;
     ladder.runs = draws_;
-    Moves moves{{kFirstBeta}, true};
+    Moves moves{{kFirstBeta, kFirstBeta}, true};
     Beyond beyond(draws_ / kOneIn);
     begin(beyond);
     for (;;) {

@@ -23,18 +23,15 @@ std::uint64_t word_of(double u) {
   return static_cast<std::uint64_t>(std::clamp(u, 0.0, 1.0 - 0x1p-53) * 0x1p53) << 11;
 }
 
-// A normal that keeps its distribution while it moves; and which words do.
+// A normal that keeps its distribution while it moves.
 class Mover {
  public:
-  Mover(const WordMove& move, RandomStream& stream)
-      : share_(move.share), beta_(move.beta), rest_(std::sqrt(1.0 - move.beta * move.beta)), stream_(stream) {}
+  Mover(double beta, RandomStream& stream) : beta_(beta), rest_(std::sqrt(1.0 - beta * beta)), stream_(stream) {}
 
-  bool moves_next() { return share_ >= 1.0 || stream_.uniform() < share_; }
   double moved(double z) { return rest_ * z + beta_ * stream_.normal(); }
-  RandomStream& stream() { return stream_; }
 
  private:
-  double share_, beta_, rest_;
+  double beta_, rest_;
   RandomStream& stream_;
 };
 
@@ -52,21 +49,18 @@ void move_pair(std::uint64_t& first, std::uint64_t& second, Mover& mover) {
   second = word_of(turns < 0.0 ? turns + 1.0 : turns);
 }
 
-void move_all(std::vector<std::uint64_t>& words, Mover& mover) {
-  enum : std::uint64_t { singles, pairs, later_pairs, ways };
-  const std::uint64_t way = mover.stream().index(ways);
-  // What the last word would be paired with the run has not read: it is any word.
-  if (way == later_pairs) words.push_back(mover.stream().bits());
-  std::size_t next = 0;
-  if (way == later_pairs && mover.moves_next()) move_single(words.front(), mover);
-  if (way == later_pairs) ++next;
-  const std::size_t together = way == singles ? 1 : 2;
-  for (; next < words.size(); next += together) {
-    if (!mover.moves_next()) continue;
-    if (way == singles)
-      move_single(words[next], mover);
-    else
+// normals: the first word of each two that move as one, ascending.
+void move_all(std::vector<std::uint64_t>& words, const std::vector<std::size_t>& normals, Mover& mover) {
+  auto two = normals.begin();
+  for (std::size_t next = 0; next < words.size();) {
+    two = std::lower_bound(two, normals.end(), next);
+    if (two != normals.end() && *two == next) {
       move_pair(words[next], words[next + 1], mover);
+      next += 2;
+    } else {
+      move_single(words[next], mover);
+      ++next;
+    }
   }
 }
 
@@ -74,17 +68,19 @@ void move_all(std::vector<std::uint64_t>& words, Mover& mover) {
 
 RunWords::RunWords(const RunWords& from, const WordMove& move, RandomStream& stream)
     : streams_(from.streams_), fresh_(&stream) {
-  Mover mover(move, stream);
+  Mover mover(move.beta, stream);
   for (Stream& moved : streams_) {
+    if (!move.as_read) moved.normals.clear();
+    move_all(moved.words, moved.normals, mover);
+    moved.normals.clear();
     moved.read = 0;
-    move_all(moved.words, mover);
   }
 }
 
 RunWords::Stream& RunWords::stream_of(const RandomStreamName& name) {
   const auto found = std::find_if(streams_.begin(), streams_.end(), [&](const Stream& s) { return s.name == name; });
   if (found != streams_.end()) return *found;
-  return streams_.emplace_back(Stream{name, {}});
+  return streams_.emplace_back(Stream{name, {}, 0, {}});
 }
 
 RandomBlock RunWords::block(const RandomStreamName& name, std::uint64_t number, const RandomBlock& generated) {
@@ -96,6 +92,27 @@ RandomBlock RunWords::block(const RandomStreamName& name, std::uint64_t number, 
   RandomBlock block;
   std::copy_n(stream.words.begin() + static_cast<std::ptrdiff_t>(first), kBlock, block.begin());
   return block;
+}
+
+void RunWords::normals(const RandomStreamName& name, std::uint64_t first) {
+  std::vector<std::size_t>& normals = stream_of(name).normals;
+  const auto behind = std::lower_bound(normals.begin(), normals.end(), first);
+  if (behind == normals.end() || *behind != first) normals.insert(behind, static_cast<std::size_t>(first));
+}
+
+bool RunWords::reads_alike(const RunWords& other) const {
+  return std::all_of(streams_.begin(), streams_.end(), [&](const Stream& a) {
+    const auto found =
+        std::find_if(other.streams_.begin(), other.streams_.end(), [&](const Stream& b) { return b.name == a.name; });
+    if (found == other.streams_.end()) return true;
+    const std::size_t common = std::min(a.read, found->read);
+    const auto of_common = [common](const Stream& stream) {
+      return std::vector(stream.normals.begin(),
+                         std::lower_bound(stream.normals.begin(), stream.normals.end(), common));
+    };
+    const std::vector<std::size_t> normals = of_common(a);
+    return normals == of_common(*found) && (normals.empty() || normals.back() + 1 < common);
+  });
 }
 
 void RunWords::keep_what_was_read() {

@@ -39,7 +39,7 @@ std::string bytes_of(const Rows& rows) {
 
 Rows rows_of(const std::string& bytes) {
   Rows rows(bytes.size() / sizeof(double));
-  std::memcpy(rows.data(), bytes.data(), rows.size() * sizeof(double));
+  if (!rows.empty()) std::memcpy(rows.data(), bytes.data(), rows.size() * sizeof(double));
   return rows;
 }
 

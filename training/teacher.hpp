@@ -31,8 +31,9 @@ struct TeacherSet {
   /// (N x 3): the shortest and the longest of the base's last intervals, NaN before it has one, and the time that it
   /// has coasted; seconds.
   Eigen::MatrixXd intervals;
-  /// Of whole tracks, else empty: (N), whether a row is the first of its track, whether it is taught (where it is not, its
-  /// label, factors and reference are zero), and whether the base used a measurement there, which a network remembers.
+  /// Of whole tracks, else empty: (N), whether a row is the first of its track, whether it is taught (where it is not,
+  /// its label, factors and reference are zero), and whether the base used a measurement there, which a network
+  /// remembers.
   std::vector<bool> begins, taught, used;
   /// Of rows that a smoother taught, else empty: (N x n), a draw of the error that it says its label has.
   Eigen::MatrixXd unsure = {};
@@ -62,12 +63,12 @@ struct TeacherOptions {
 };
 
 /// Runs `ensemble`, which has the members that `correction` names, over correction.training.runs runs of the scenario.
-/// Where correction.training.teacher names one, a smoother among the members stands for the truth, of one target: a step is
-/// taught with the probability by which the smoother knows more than its filter, the mean over the components of 1 - P_s /
-/// P_f, in [0, 1]; none where it did not look back, and none where its own filter was surprised (kSurprise).
-/// Steps without a record, with unknown truth, with features that are not finite or with an error of the base beyond
-/// correction.training.leave_out_beyond are left out. Throws InputError where no step is left, or where the truth lacks
-/// a component of the base's state or a quantity of those limits, all found by name.
+/// Where correction.training.teacher names one, a smoother among the members stands for the truth, of one target: a
+/// step is taught with the probability by which the smoother knows more than its filter, the mean over the components
+/// of 1 - P_s / P_f, in [0, 1]; none where it did not look back, and none where its own filter was surprised
+/// (kSurprise). Steps without a record, with unknown truth, with features that are not finite or with an error of the
+/// base beyond correction.training.leave_out_beyond are left out. Throws InputError where no step is left, or where the
+/// truth lacks a component of the base's state or a quantity of those limits, all found by name.
 TeacherSet collect_teacher_set(const Ensemble& ensemble, const CorrectionSpec& correction, const Scenario& scenario,
                                const TeacherOptions& options);
 

@@ -171,8 +171,8 @@ void fit_covariance(const TeacherSet& met, const CorrectionSpec& spec, const Sta
   rules.moments = covariance_moments(rules.network, met.X, in_sigmas(errors, met.covariance_factors), output_parity);
 }
 
-// What a kind of network is taught with: `teacher` for what it says, `met` for how sure it is, `validation` to know when
-// it is best.
+// What a kind of network is taught with: `teacher` for what it says, `met` for how sure it is, `validation` to know
+// when it is best.
 struct Lessons {
   const TeacherSet& teacher;
   const TeacherSet& met;

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <exception>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -58,7 +60,8 @@ class TunedTracker {
   std::vector<double> start_;
 };
 
-// What tuning wants to know of runs: the squared errors of each quantity, and the sum of the NEES and how many they are.
+// What tuning wants to know of runs: the squared errors of each quantity, and the sum of the NEES and how many they
+// are.
 struct TuningFigures {
   std::vector<SquaredErrors> errors;
   SquaredErrors nees;
@@ -121,12 +124,13 @@ class TuningRuns {
     SquaredErrors nees;
     for (const TuningFigures& of_run : figures) nees.add(of_run.nees);
     tuned.nees = nees.sum / nees.count;
+    if (ranks_) take_first(*ranks_, tuned);
     return tuned;
   }
 
  private:
-  // Gives every rank the figures of the others' runs. Each looks for the least cost by itself, and no wrong one is found
-  // where they should ever look at different places.
+  // Gives every rank the figures of the others' runs. Each looks for the least cost by itself, and no wrong one is
+  // found where they should ever look at different places.
   static void exchange(Ranks& ranks, const std::vector<double>& logarithms, std::vector<TuningFigures>& figures) {
     TallyStream own(false);
     for (const double logarithm : logarithms) own.whole(std::bit_cast<std::uint64_t>(logarithm));
@@ -142,6 +146,17 @@ class TuningRuns {
       for (std::size_t run = rank; run < figures.size(); run += ranks.size()) figures[run].exchange(stream);
       stream.finish();
     }
+  }
+
+  // Logarithms may differ in their last bit from machine to machine, and all must take the same step.
+  static void take_first(Ranks& ranks, Tuned& tuned) {
+    TallyStream own(false);
+    own.value(tuned.cost);
+    own.value(tuned.nees);
+    const std::string firsts = from_first(ranks, own.written());
+    TallyStream first(firsts);
+    tuned.cost = first.value(0.0);
+    tuned.nees = first.value(0.0);
   }
 
   const Study& study_;
@@ -184,6 +199,13 @@ std::vector<double> offset(std::vector<double> values, double by) {
   return values;
 }
 
+std::vector<std::uint64_t> bits_of(const TunedValues& values) {
+  std::vector<std::uint64_t> bits;
+  for (const auto& [key, numbers] : values)
+    for (const double number : numbers) bits.push_back(std::bit_cast<std::uint64_t>(number));
+  return bits;
+}
+
 // What numbers cost; those that make no tracker, a probability above 1 say, are as bad as can be.
 std::optional<Tuned> score_of(const std::vector<double>& logarithms, const TunedTracker& tracker,
                               const TuningRuns& runs) {
@@ -218,6 +240,8 @@ TunedValues tune_tracker(const Study& study, const std::string& name, const Tune
     spec.configuration = with_numbers(*spec.configuration, kMeasurementMatrix, fitted[kMeasurementMatrix]);
     if (spec.tune.empty()) {
       if (report) *report = {};
+      if (options.ranks)
+        check_all_have(*options.ranks, fmt::format("{}", fmt::join(bits_of(fitted), " ")), "fitted number");
       return fitted;
     }
   }
@@ -228,9 +252,16 @@ TunedValues tune_tracker(const Study& study, const std::string& name, const Tune
     return tuned ? tuned->cost : std::numeric_limits<double>::max();
   };
   int evaluations = 0;
+  std::exception_ptr failure;  // the optimizer would swallow it
   double best = std::numeric_limits<double>::max();
   std::function<double(const std::vector<double>&)> cost = [&](const std::vector<double>& logarithms) {
-    const double value = cost_at(logarithms);
+    if (failure) return std::numeric_limits<double>::max();
+    double value = std::numeric_limits<double>::max();
+    try {
+      value = cost_at(logarithms);
+    } catch (...) {
+      failure = std::current_exception();
+    }
     best = std::min(best, value);
     if (options.progress)
       options.progress(++evaluations, options.max_evaluations, best);
@@ -240,6 +271,7 @@ TunedValues tune_tracker(const Study& study, const std::string& name, const Tune
   };
   tracker.make(tracker.start());  // the start must be valid
   const double before = cost(tracker.start());
+  if (failure) std::rethrow_exception(failure);
 
   // Two rounds: the second from where the first ended, with a fresh simplex, for those that collapse on the way.
   std::vector<double> logarithms = tracker.start();
@@ -258,11 +290,13 @@ TunedValues tune_tracker(const Study& study, const std::string& name, const Tune
     optimizer.set_xtol_abs(1e-3);
     optimizer.set_maxeval(options.max_evaluations / 2);
     optimizer.optimize(logarithms, after);
+    if (failure) std::rethrow_exception(failure);
   }
   if (logarithms.size() > 1) fix_common_factor(logarithms, tracker, runs);
   if (report) *report = {evaluations, before, after};
   TunedValues values = tracker.values(logarithms);
   values.merge(fitted);
+  if (options.ranks) check_all_have(*options.ranks, fmt::format("{}", fmt::join(bits_of(values), " ")), "tuned number");
   return values;
 }
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "app/output.hpp"
 #include "truebearing/core/content_hash.hpp"
@@ -126,9 +127,14 @@ Shard Shard::parse(const std::string& text) {
 std::string hash_of_files(const std::vector<std::filesystem::path>& files) {
   ContentHash hash;
   for (const std::filesystem::path& file : files) {
-    const std::string text = read_text_file(file, kMostInput);
-    hash.take(text.size());
-    for (const char byte : text) hash.take(static_cast<unsigned char>(byte));
+    std::ifstream stream(file, std::ios::binary | std::ios::ate);
+    if (!stream) read_text_file(file, kMostInput);  // which says what is wrong with it
+    hash.take(static_cast<std::uint64_t>(stream.tellg()));
+    stream.seekg(0);
+    std::vector<char> piece(std::size_t{1} << 20);
+    while (stream.read(piece.data(), static_cast<std::streamsize>(piece.size())), stream.gcount() > 0)
+      for (std::streamsize i = 0; i < stream.gcount(); ++i)
+        hash.take(static_cast<unsigned char>(piece[static_cast<std::size_t>(i)]));
   }
   return fmt::format("{:016x}", hash.value());
 }

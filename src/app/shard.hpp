@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shards: the runs of one comparison shared among processes that know nothing of each other (an array of batch jobs).
 // A shard file has the tallies of consecutive blocks of runs (evaluation/comparison_runs.hpp): a line of JSON that says
-// of which comparison they are, then a line for each block. `merge` adds them in the order of the blocks, as one process
-// does, and has its figures to the last bit where all machines are of one kind (docs/scale.md).
+// of which comparison they are, then a line for each block. `merge` adds them in the order of the blocks, as one
+// process does, and has its figures to the last bit where all machines are of one kind (docs/scale.md).
 #pragma once
 
 #include <cstddef>

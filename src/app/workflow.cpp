@@ -93,7 +93,7 @@ void check_products(const Study& study, const std::vector<std::string>& outputs,
 void check_ranks(Ranks* ranks, const std::vector<std::filesystem::path>& files, const std::string& options) {
   if (ranks)
     check_all_have(*ranks, fmt::format("{} {} {}", TRUEBEARING_VERSION, hash_of_files(files), options),
-                   "version, other options, or another text of the study, or of a model or scenario of it,");
+                   "version, other options, or another text of the study, or of a model, a scenario or a track of it,");
 }
 
 ParametersFile tune_study(const Study& study, const WorkflowOptions& options) {
@@ -170,7 +170,8 @@ void train_motions(const Study& study, const std::vector<std::string>& names, co
     for (std::size_t i = 0; i < names.size(); ++i) write_motion(outputs[i], train_motion(study, names[i], options));
   if (names.empty() || !options.ranks) return;
   options.ranks->gather_all({});  // from here on all read what the first has written
-  check_ranks(options.ranks, study.input_files(), "");
+  check_all_have(*options.ranks, hash_of_files(study.input_files()),
+                 "learned motion, which has to be in a folder that all machines share,");
 }
 
 void keep_checkpoints(const Study& study, const std::vector<std::string>& names,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tuning and training a whole study: what `tune`, `train` and `compare --retrain` share.
+// Tuning and training a whole study: what `tune`, `train`, `learn` and `compare --retrain` share.
 #pragma once
 
 #include <cstdint>
@@ -36,11 +36,12 @@ void check_products(const Study& study, const std::vector<std::string>& outputs,
 std::vector<std::filesystem::path> inputs_without(const Study& study,
                                                   const std::vector<std::filesystem::path>& replaced);
 
-/// Throws InputError at every rank where they are of other versions, have other options, as this text says them, or find
-/// other texts in these files. Nothing without ranks.
+/// Throws InputError at every rank where they are of other versions, have other options, as this text says them, or
+/// find other texts in these files. Nothing without ranks.
 void check_ranks(Ranks* ranks, const std::vector<std::filesystem::path>& files, const std::string& options);
 
-/// Fits every tracker of the study that has something to tune, as all ranks have it. Says on standard error what it found, unless quiet.
+/// Fits every tracker of the study that has something to tune, as all ranks have it. Says on standard error what it
+/// found, unless quiet.
 ParametersFile tune_study(const Study& study, const WorkflowOptions& options);
 
 /// The trackers of those names whose motion is learned; all of them where there are none.

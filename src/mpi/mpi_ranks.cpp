@@ -15,8 +15,8 @@ namespace {
 constexpr int kNumber = 1, kPart = 2;
 constexpr std::size_t kMostAtOnce = std::size_t{1} << 30;  // MPI counts in int
 
-// For all ranks, or for rank 0. What takes long (a training) shall not cost the others' processors meanwhile, as MPI's own
-// waiting does: between looks it sleeps for a fiftieth of the time that it has waited.
+// For all ranks, or for rank 0. What takes long (a training) shall not cost the others' processors meanwhile, as MPI's
+// own waiting does: between looks it sleeps for a fiftieth of the time that it has waited.
 void wait_for(MPI_Request request) {
   using Clock = std::chrono::steady_clock;
   constexpr Clock::duration kLongestSleep = std::chrono::milliseconds(20);

@@ -8,7 +8,7 @@
 
 #include "truebearing/core/random.hpp"
 
-namespace truebearing {
+namespace truebearing::simd_sine_test {
 namespace {
 
 template <int kWidth>
@@ -49,4 +49,4 @@ TEST(SimdSine, OfWhatIsNotFiniteIsNone) {
 }
 
 }  // namespace
-}  // namespace truebearing
+}  // namespace truebearing::simd_sine_test

@@ -69,8 +69,8 @@ TEST(FuzzyNetwork, IsTheWeightedSumOfThePaper) {
   }
 }
 
-// Of any number of rules, whether they fill up a register or not: strengths to the last digits of their exponents, and in
-// one go what they weight.
+// Of any number of rules, whether they fill up a register or not: strengths to the last digits of their exponents, and
+// in one go what they weight.
 TEST(FuzzyNetwork, AnswersWhatItsStrengthsWeight) {
   RandomStream random = test_stream(31);
   const auto normal = [&] { return random.normal(); };

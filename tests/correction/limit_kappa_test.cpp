@@ -146,8 +146,8 @@ TEST(SafeDistance, IsExactToOneInABillionInAnyUnits) {
   EXPECT_GT(known, 1900);
 }
 
-// References of filters that were told tiny standard deviations: ill-conditioned, singular, and far below the last digit
-// of the estimate that they belong to. What is published is bounded in exact arithmetic, or it is the reference.
+// References of filters that were told tiny standard deviations: ill-conditioned, singular, and far below the last
+// digit of the estimate that they belong to. What is published is bounded in exact arithmetic, or it is the reference.
 TEST(WithinKappa, NothingThatIsPublishedPassesTheBound) {
   RandomStream random({.seed = 22}, StreamId::test);
   const int cases = hostile_cases(1000000);

@@ -65,8 +65,8 @@ TEST(RunWords, OfAStreamThatIsBegunAgainAreTheSame) {
   EXPECT_EQ(draw(moved, uniforms(20)), first);
 }
 
-// 40000 words in twenty cells: chi-square with 19 degrees of freedom, above 43.8 once in a thousand. So for a chain that
-// goes on and on, as rounding or a wrong step would show there.
+// 40000 words in twenty cells: chi-square with 19 degrees of freedom, above 43.8 once in a thousand. So for a chain
+// that goes on and on, as rounding or a wrong step would show there.
 TEST(RunWords, MovedStayUniformAndIndependent) {
   for (const WordMove move : {WordMove{true, 0.1}, WordMove{true, 0.7}, WordMove{false, 0.4}, WordMove{false, 1.0}}) {
     RandomStream chain({.seed = 5}, StreamId::test);
@@ -100,8 +100,8 @@ TEST(RunWords, MovedStayUniformAndIndependent) {
   }
 }
 
-// A normal keeps sqrt(1 - beta^2) of itself where its words move as it was made of them, and something where they move one
-// by one.
+// A normal keeps sqrt(1 - beta^2) of itself where its words move as it was made of them, and something where they move
+// one by one.
 TEST(RunWords, MoveAsFarAsBetaSays) {
   const auto correlation = [](const WordMove& move) {
     RandomStream chain({.seed = 6}, StreamId::test);

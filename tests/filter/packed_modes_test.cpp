@@ -166,6 +166,35 @@ TEST(PackedModes, FailWhereSeparateOnesDo) {
 }
 
 // An exact position that one mode is as sure of, and cannot take; the other can.
+// Of a motion that goes nowhere from some states, though its F is known there.
+struct Rooted : Bent {
+  Eigen::Vector4d f(const State& x, double dt_s) const {
+    State moved = Bent::f(x, dt_s);
+    moved[2] = std::sqrt(x[2]);
+    return moved;
+  }
+};
+
+TEST(PackedModes, FailWhereAMotionComesToNoNumber) {
+  const auto crosses = [](double speed_mps) {
+    const auto modes = [] {
+      ModeBank::Modes both = modes_of(2, false);
+      both.push_back(state_of<KalmanFilter<4>>(Rooted{}));
+      return both;
+    };
+    const std::unique_ptr<ModeBank> packed = packed_modes(modes());
+    SeparateModes separate(modes());
+    const Eigen::Vector4d x(0.0, 0.0, speed_mps, 0.0);
+    packed->begin(x.data(), kP0.data(), 4);
+    separate.begin(x.data(), kP0.data(), 4);
+    const bool crossed = packed->mix_and_predict(mixing_of(3), 1.0);
+    EXPECT_EQ(separate.mix_and_predict(mixing_of(3), 1.0), crossed);
+    return crossed;
+  };
+  EXPECT_TRUE(crosses(100.0));
+  EXPECT_FALSE(crosses(-100.0));
+}
+
 TEST(PackedModes, OneThatFailsStaysWhereItWasPredicted) {
   const auto two = [] {
     ModeBank::Modes modes;

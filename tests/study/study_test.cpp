@@ -82,7 +82,7 @@ TEST(Study, WrongTypesAreRefused) {
 }
 
 TEST(Study, NumbersOutOfRangeAreRefused) {
-  EXPECT_THAT(refusal("runs = 20\nseed", "runs = 0\nseed"), HasSubstr("[1, 10000000]"));
+  EXPECT_THAT(refusal("runs = 20\nseed", "runs = 0\nseed"), HasSubstr("[1, 1000000000]"));
   EXPECT_THAT(refusal("seed = 5", "seed = -1"), HasSubstr("seed"));
   EXPECT_THAT(refusal("kappa = 3.0", "kappa = 0.0"), HasSubstr("kappa"));
   EXPECT_THAT(refusal("kappa = 3.0", "kappa = nan"), HasSubstr("kappa"));

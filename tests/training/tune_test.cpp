@@ -110,6 +110,39 @@ TEST(Tune, RanksThatLookAtDifferentNumbersAreTold) {
   EXPECT_EQ(messages[1], "rank 0: rounds otherwise than rank 1; valid: machines of one kind");
 }
 
+// Ranks whose first so many exchanges are as they should be, and then one bit is another.
+class ThatPart final : public Ranks {
+ public:
+  ThatPart(Ranks& ranks, int exchanges) : ranks_(ranks), left_(exchanges) {}
+  std::size_t rank() const override { return ranks_.rank(); }
+  std::size_t size() const override { return ranks_.size(); }
+  void send(std::size_t number, std::string_view bytes) override { ranks_.send(number, bytes); }
+  std::optional<std::pair<std::size_t, std::string>> receive() override { return ranks_.receive(); }
+  std::vector<std::string> gather_all(std::string_view bytes) override {
+    std::string sent(bytes);
+    if (left_-- == 0 && rank() == 1) sent[0] = static_cast<char>(sent[0] ^ 1);
+    return ranks_.gather_all(sent);
+  }
+  void leave() override { ranks_.leave(); }
+  [[noreturn]] void abort() override { ranks_.abort(); }
+
+ private:
+  Ranks& ranks_;
+  int left_;
+};
+
+TEST(Tune, RanksThatPartOnTheWayAreTold) {
+  const TemporaryFolder folder;
+  const Study study = known(folder);
+  const auto messages = at_ranks(2, [&](Ranks& ranks) {
+    ThatPart parting(ranks, 8);  // of four evaluations
+    TuneOptions options{.seed = 2, .threads = 1, .max_evaluations = 20, .progress = {}, .ranks = &parting};
+    return error_message([&] { tune_tracker(study, "filter", options); });
+  });
+  EXPECT_EQ(messages[0], "rank 1: rounds otherwise than rank 0; valid: machines of one kind");
+  EXPECT_THAT(messages[1], HasSubstr("rounds otherwise"));
+}
+
 // From either side, over seeds: the mean of ln(found / true) is zero within its interval, and no seed is far off.
 TEST(Tune, OneNumberAloneIsFoundWithoutBias) {
   const TemporaryFolder folder;

@@ -52,8 +52,8 @@ struct Scores {
 };
 void score_signals(const Scores& s);
 
-/// Adds a block of Ns snapshots to the information: 2 Ns pp [dRa dRa' + dRd aRa], 2 Ns pp dRa aRa, Ns pp aRa^2, products
-/// taken element by element, pp = p p' (N x N each).
+/// Adds a block of Ns snapshots to the information: 2 Ns pp [dRa dRa' + dRd aRa], 2 Ns pp dRa aRa, Ns pp aRa^2,
+/// products taken element by element, pp = p p' (N x N each).
 struct Information {
   int N, lanes;
   double Ns;

@@ -12,8 +12,8 @@ namespace truebearing::kernels {
 /// kMaxSignals of angle_likelihood.hpp, without its headers.
 inline constexpr int kMostSignals = 12;
 
-/// Columns 0 .. kColumns - 1 of out = A B, their rows first .. n - 1, over the columns begin .. end - 1 of A. Strides: of
-/// doubles, from one column to the next. Registers reach beyond the end of a column: A and out have kWidth - 1 more
+/// Columns 0 .. kColumns - 1 of out = A B, their rows first .. n - 1, over the columns begin .. end - 1 of A. Strides:
+/// of doubles, from one column to the next. Registers reach beyond the end of a column: A and out have kWidth - 1 more
 /// doubles behind them, and whoever computes the columns of a matrix does it in their order, so that the next one
 /// overwrites what this one left in its place.
 template <int kWidth, int kColumns>

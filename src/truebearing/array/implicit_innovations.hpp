@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// ImplicitInnovation (angular_innovation.hpp) of all targets at once, as a tracker wants them: steering vectors and their
-// derivatives as well, targets in the lanes of SIMD registers. Re(b^H a) = 0, as a steering vector turns at right angles
-// to itself:
+// ImplicitInnovation (angular_innovation.hpp) of all targets at once, as a tracker wants them: steering vectors and
+// their derivatives as well, targets in the lanes of SIMD registers. Re(b^H a) = 0, as a steering vector turns at right
+// angles to itself:
 //     d_theta = Re(yb^H ya) / (|b|^2 - |yb|^2)
 #pragma once
 

@@ -17,12 +17,12 @@ namespace {
   return known > 0 ? known : std::min(targets, kMostSignals);
 }
 
-// Inner loops run down whole registers of a column, triangular or not: with their length known beforehand that is faster
-// than half of it.
+// Inner loops run down whole registers of a column, triangular or not: with their length known beforehand that is
+// faster than half of it.
 
-// A (rows x rows) = L D^-1 L' by its first n columns, which become those of L, D the diagonal of L: no square root stands
-// between one column and the next. By the way x = L^-1 y (n); of y (n) nothing is left. False where their square part is
-// not positive definite.
+// A (rows x rows) = L D^-1 L' by its first n columns, which become those of L, D the diagonal of L: no square root
+// stands between one column and the next. By the way x = L^-1 y (n); of y (n) nothing is left. False where their square
+// part is not positive definite.
 template <int kWidth>
 [[gnu::always_inline]] inline bool factorise(int rows, int n, double* A, double* inverse, double* y, double* x) {
 #pragma GCC unroll 8

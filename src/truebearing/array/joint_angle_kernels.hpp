@@ -5,8 +5,8 @@
 
 namespace truebearing::kernels {
 
-/// [L; Y'], the first 2N columns of the lower triangular root of P (3N x 3N), in place of the first 2N columns of P, and
-/// L' (2N x 2N). False where their square part is not positive definite.
+/// [L; Y'], the first 2N columns of the lower triangular root of P (3N x 3N), in place of the first 2N columns of P,
+/// and L' (2N x 2N). False where their square part is not positive definite.
 void prior_root(int targets, double* P, double* Lt, bool& is_positive_definite);
 
 /// B = I + L' J L as K D^-1 K', K lower triangular with D for its diagonal and anything above it, and the step from

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Words that the streams of a run take in place of those that their generator gives. Whoever changes the randomness of a
-// run a little (evaluation/run_words.hpp) needs to know nothing of what draws from it.
+// Words that the streams of a run take in place of those that their generator gives. Whoever changes the randomness of
+// a run a little (evaluation/run_words.hpp) needs to know nothing of what draws from it.
 #pragma once
 
 #include <array>
@@ -21,8 +21,8 @@ struct RandomStreamName {
 class RandomSource {
  public:
   virtual ~RandomSource() = default;
-  /// Block `number`, from 0, of a stream, whose generator has given `generated`. A stream that is begun again asks
-  /// again. Streams that this itself draws from are the generator's.
+  /// Block `number` of a stream, from 0 and none left out, whose generator has given `generated`. A stream that is
+  /// begun again asks again. Streams that this itself draws from are the generator's.
   virtual RandomBlock block(const RandomStreamName& stream, std::uint64_t number, const RandomBlock& generated) = 0;
   /// Word `first` of a stream, counted from 0, and the one behind it are about to become two normals
   /// (RandomStream::normal()).

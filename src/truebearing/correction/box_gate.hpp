@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The box gate: how far a step lies inside the box that the training data filled. The sides of the box are the
 // network's inputs; the intervals at which the base used measurements; and the disagreement: the Mahalanobis distance
-// between what the network wants and the reference, under the sum of the two covariances. A target that the inputs alone
-// do not give away shows there: the network contradicts the trusted tracker as it never did in training. The worst side
-// decides.
+// between what the network wants and the reference, under the sum of the two covariances. A target that the inputs
+// alone do not give away shows there: the network contradicts the trusted tracker as it never did in training. The
+// worst side decides.
 #pragma once
 
 #include <Eigen/Core>
@@ -25,8 +25,8 @@ double disagreement(const Eigen::MatrixBase<DerivedD>& d, const Eigen::MatrixBas
   return std::sqrt(mahalanobis_squared(P_a + P_b, d));
 }
 
-/// The intervals that were taught, of the last few of a track (interval_memory.hpp) the shortest and the longest, and the
-/// longest time that its base coasted.
+/// The intervals that were taught, of the last few of a track (interval_memory.hpp) the shortest and the longest, and
+/// the longest time that its base coasted.
 struct IntervalBox {
   double low_s = 0.0;
   double high_s = std::numeric_limits<double>::infinity();

@@ -22,8 +22,8 @@ using StateVector = Eigen::Matrix<double, N, 1, 0, kRoom<N>, 1>;
 template <int N>
 using StateMatrix = Eigen::Matrix<double, N, N, 0, kRoom<N>, kRoom<N>>;
 
-// Calls body with the number of components as a constant, for states that are often corrected: of a line, of Lorenz' system,
-// of the plane and of space.
+// Calls body with the number of components as a constant, for states that are often corrected: of a line, of Lorenz'
+// system, of the plane and of space.
 template <typename Body>
 auto with_state_size(Eigen::Index n, const Body& body) {
   switch (n) {
@@ -54,8 +54,8 @@ void store(const Sized& from, Bounded& to) {
   Eigen::Map<typename Sized::PlainObject>(to.data(), from.rows(), from.cols()) = from;
 }
 
-// What was measured and when, and nothing of what a tracker predicted, innovated or gained: the slot is one of corrected
-// records, whose blocks of that kind nobody fills.
+// What was measured and when, and nothing of what a tracker predicted, innovated or gained: the slot is one of
+// corrected records, whose blocks of that kind nobody fills.
 void begin_record(const StepRecord& step, StepRecord& corrected) {
   corrected.track = step.track;
   corrected.time_s = step.time_s;
@@ -66,8 +66,8 @@ void begin_record(const StepRecord& step, StepRecord& corrected) {
   corrected.correction.emplace(Unfilled());
 }
 
-// True where P (lower half) is a covariance. One that is far from singular is seen at once: every pivot is a good part of
-// its variance.
+// True where P (lower half) is a covariance. One that is far from singular is seen at once: every pivot is a good part
+// of its variance.
 template <typename Matrix>
 bool is_covariance_of_state(const Matrix& P) {
   constexpr double kLeastShare = 1e-9, kLargest = 1e100;  // whose squares are numbers
@@ -209,7 +209,8 @@ std::span<const StepRecord> Correction::correct(const Ensemble& ensemble) {
   return {records_.data(), references.size()};
 }
 
-// The reference, or the fallback where that lately agreed better with the measurements: what lies between them by the referee's weights.
+// The reference, or the fallback where that lately agreed better with the measurements: what lies between them by the
+// referee's weights.
 const StepRecord& Correction::trusted(const StepRecord& base, const StepRecord& reference, const StepRecord* fallback,
                                       Track& track) {
   if (!fallback || fallback->status != reference.status || base.status != reference.status) return reference;

@@ -37,7 +37,8 @@ class OutputUnits {
     return inverse().asDiagonal() * in_frame(P) * inverse().asDiagonal();
   }
 
-  /// Makes of the covariance P of `covariance_of` the correction's own, as NetworkAnswer::covariance() does in the frame.
+  /// Makes of the covariance P of `covariance_of` the correction's own, as NetworkAnswer::covariance() does in the
+  /// frame.
   template <typename Matrix>
   void own_covariance(const NetworkAnswer& answer, Matrix& P) const {
     if (answer.moments.size() == 0) {

@@ -2,8 +2,8 @@
 // The frame that a correction works in. Where a target flies to does not matter to how a filter lags behind it: in the
 // track frame errors and innovations are along and across the base's estimated velocity, so that what was learnt on one
 // course holds on all of them. To a sensor of bearings it matters how a target is seen: in the sight frame they are
-// along and across the line from the sensor to the base's estimate. In space both turn about the vertical alone: along and
-// across are level, and up stays up.
+// along and across the line from the sensor to the base's estimate. In space both turn about the vertical alone: along
+// and across are level, and up stays up.
 #pragma once
 
 #include <Eigen/Core>
@@ -38,8 +38,8 @@ inline Eigen::Vector2d level_velocity(const BoundedVector& x) {
   return x.segment<2>(x.size() / 2);
 }
 
-/// The rotation into a frame, for one estimate: [u'; s'] with u along and s = (u_y, -u_x) to starboard, symmetric and its
-/// own inverse.
+/// The rotation into a frame, for one estimate: [u'; s'] with u along and s = (u_y, -u_x) to starboard, symmetric and
+/// its own inverse.
 class FrameRotation {
  public:
   FrameRotation() = default;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The proven bound. Whatever a network says, the published estimate is at most kappa standard deviations of the reference
-// away from the reference; and where the reference's covariance is not safely positive definite, it is the reference.
+// The proven bound. Whatever a network says, the published estimate is at most kappa standard deviations of the
+// reference away from the reference; and where the reference's covariance is not safely positive definite, it is the
+// reference.
 #pragma once
 
 #include <array>
@@ -14,10 +15,10 @@ namespace truebearing {
 
 namespace detail {
 
-/// What d' P^-1 d asks of P (n x n) = L diag(pivots) L': L^-1, of unit diagonal, and the pivots' inverses, in the arithmetic
-/// of Real. The elimination errs by the machine's epsilon times the condition number of the correlation matrix C,
-/// whatever the scales of the components (Demmel 1989, "On floating point errors in Cholesky"); that is at most
-/// n trace(C^-1) = n sum P_jj (P^-1)_jj.
+/// What d' P^-1 d asks of P (n x n) = L diag(pivots) L': L^-1, of unit diagonal, and the pivots' inverses, in the
+/// arithmetic of Real. The elimination errs by the machine's epsilon times the condition number of the correlation
+/// matrix C, whatever the scales of the components (Demmel 1989, "On floating point errors in Cholesky"); that is at
+/// most n trace(C^-1) = n sum P_jj (P^-1)_jj.
 template <typename Real>
 struct Eliminated {
   std::array<std::array<Real, kMaxDimension>, kMaxDimension> inverse_L;  // below the diagonal
@@ -25,7 +26,8 @@ struct Eliminated {
   Real condition;  // no number <= anything where P is not positive definite
 };
 
-/// Of n = N components, or of as many as there are where N is not positive. Divides before it multiplies: squares may be out of range.
+/// Of n = N components, or of as many as there are where N is not positive. Divides before it multiplies: squares may
+/// be out of range.
 template <int N, typename Real>
 Real squared_length(const Eliminated<Real>& elimination, std::size_t size, const double* d) {
   const std::size_t n = N > 0 ? static_cast<std::size_t>(N) : size;
@@ -42,8 +44,8 @@ Real squared_length(const Eliminated<Real>& elimination, std::size_t size, const
 
 }  // namespace detail
 
-/// sqrt(d' P^-1 d) of any number of vectors d (n) under one P (n x n), which is eliminated once. Only the lower triangle
-/// of P is read; it must outlive this.
+/// sqrt(d' P^-1 d) of any number of vectors d (n) under one P (n x n), which is eliminated once. Only the lower
+/// triangle of P is read; it must outlive this.
 class SafeDistance {
  public:
   SafeDistance(const BoundedMatrix& P);  // NOLINT: for one vector, P says it all
@@ -97,8 +99,8 @@ inline Limited limit_kappa(const SafeDistance& distance, const BoundedVector& d,
   return limit_kappa<0>(distance, d, kappa);
 }
 
-/// x_reference + d, or x_reference where d, once added, is more than kappa standard deviations long: a sum rounds to the
-/// digits of x_reference, of which P may be far below.
+/// x_reference + d, or x_reference where d, once added, is more than kappa standard deviations long: a sum rounds to
+/// the digits of x_reference, of which P may be far below.
 template <int N, typename Vector>
 Vector within_kappa(const Vector& x_reference, const SafeDistance& distance, const Vector& d, double kappa) {
   constexpr double kSlack = 4e-10;  // what a length that was measured in rounded arithmetic may lack

@@ -14,7 +14,8 @@ namespace truebearing {
 /// At most 1 MiB and 64 levels. Throws InputError that names file and key.
 CorrectionModel read_model_file(const std::filesystem::path& path);
 CorrectionModel parse_model(std::string_view text, const std::string& name);
-/// The same with the weights that stand beside such a file; of a network that has none of its own they are not looked at.
+/// The same with the weights that stand beside such a file; of a network that has none of its own they are not looked
+/// at.
 CorrectionModel parse_model(std::string_view text, const std::string& weights, const std::string& name);
 
 /// Writes the file and, of a recurrent network, its weights beside it: under a name of their own content, before the

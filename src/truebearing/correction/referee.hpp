@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The referee: which of two estimates has lately agreed better with the measurements, the corrected one or the reference?
-// Positions and velocities are judged apart, so that neither can hide behind the other. A position is carried one step
-// ahead with the velocity that was published, and compared with what is measured there; a velocity is compared, some
-// steps later, with the slope at its own time of the parabola through the measurements around it, which has no lag:
+// The referee: which of two estimates has lately agreed better with the measurements, the corrected one or the
+// reference? Positions and velocities are judged apart, so that neither can hide behind the other. A position is
+// carried one step ahead with the velocity that was published, and compared with what is measured there; a velocity is
+// compared, some steps later, with the slope at its own time of the parabola through the measurements around it, which
+// has no lag:
 //
 //     position, one step ahead:             |z_k - x - dt v_published|^2 / s^2
-//     velocity, of a steps ago, a = 1 2 4:  |slope(z_{k-2a}, z_{k-a}, z_k) - v|^2 / s^2,    s^2 what the reference claims
+//     velocity, of a steps ago, a = 1 2 4:  |slope(z_{k-2a}, z_{k-a}, z_k) - v|^2 / s^2,    s^2 what the reference
+// claims
 //
 // These are averaged over the recent past, and the corrected estimate loses the weight of a part where its average is
 // the larger one. It needs no truth and sees what the box gate cannot: a network that was taught on the wrong family.

@@ -57,8 +57,8 @@ struct Block {
   }
 };
 
-// e^x of kLowestExponent <= x <= 0 to two units in the last place: 2^n e^r with r = x - n ln 2 of at most half of it, by
-// Taylor's polynomial, whose rest is below 1e-17, and whose terms are summed in pairs, for none to wait.
+// e^x of kLowestExponent <= x <= 0 to two units in the last place: 2^n e^r with r = x - n ln 2 of at most half of it,
+// by Taylor's polynomial, whose rest is below 1e-17, and whose terms are summed in pairs, for none to wait.
 template <typename Doubles, typename Bits>
 [[gnu::always_inline]] inline void exponential(Doubles& x) {
   constexpr double kInteger = 0x1.8p52;  // a sum with it has no digits behind the point

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The strengths of fuzzy rules and the means that they weight, the innermost loops of a correction, in SIMD instructions
-// where the processor has them: the same bits with them and without.
+// The strengths of fuzzy rules and the means that they weight, the innermost loops of a correction, in SIMD
+// instructions where the processor has them: the same bits with them and without.
 #pragma once
 
 namespace truebearing::kernels {
@@ -17,8 +17,8 @@ struct RuleBlocks {
   const double* inverse_widths;  ///< 1 / (sqrt(2) s)
 };
 
-/// What each rule says, by columns: numbers (rules x columns) and a symmetric matrix (rules x n n), of which the lower half
-/// is read. Of either there may be none.
+/// What each rule says, by columns: numbers (rules x columns) and a symmetric matrix (rules x n n), whose lower half
+/// counts. Of either there may be none.
 struct RuleTables {
   int rules;
   int columns;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The runs of a comparison cut into blocks, and the figures of blocks that are added in their order. What computes the
-// blocks may be threads, processes or machines of one kind (docs/scale.md): the figures are the same to the last bit, as
-// how runs are cut depends on their number alone.
+// blocks may be threads, processes or machines of one kind (docs/scale.md): the figures are the same to the last bit,
+// as how runs are cut depends on their number alone.
 #pragma once
 
 #include <cstddef>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ranks: processes, on one machine or several, that do the same work together and share its runs. What is not over runs
-// (a network's training, writing) rank 0 does, and the others wait for it. What holds them together is a module of its own
-// (mpi/), so that whoever has one machine needs nothing of it.
+// (a network's training, writing) rank 0 does, and the others wait for it. What holds them together is a module of its
+// own (mpi/), so that whoever has one machine needs nothing of it.
 #pragma once
 
 #include <cstddef>
@@ -50,14 +50,14 @@ std::string from_first(Ranks& ranks, std::string_view bytes);
 BlockRange own_runs(const Ranks* ranks, std::size_t runs);
 
 /// To be called by all: calls make(item, worker) for every item in [0, items) at one of the ranks, on `threads` threads
-/// as monte_carlo() has them, and take(item, bytes) with what it gave at rank 0, in any order, from one thread at a time.
-/// All return once rank 0 has taken the last. progress: of the items that rank 0 has from all.
+/// as monte_carlo() has them, and take(item, bytes) with what it gave at rank 0, in any order, from one thread at a
+/// time. All return once rank 0 has taken the last. progress: of the items that rank 0 has from all.
 void share_work(Ranks& ranks, std::size_t items, int threads,
                 const std::function<std::string(std::size_t item, std::size_t worker)>& make,
                 const std::function<void(std::size_t item, std::string bytes)>& take, const Progress& progress = {});
 
-/// Runs the blocks of a comparison, each at one of the ranks, or all here where there are none, and gives them to `take`
-/// at rank 0 in their order. progress: of the runs that rank 0 has from all.
+/// Runs the blocks of a comparison, each at one of the ranks, or all here where there are none, and gives them to
+/// `take` at rank 0 in their order. progress: of the runs that rank 0 has from all.
 void run_blocks(ComparisonRuns& runs, Ranks* ranks, const Progress& progress,
                 const std::function<void(std::size_t block, std::string_view bytes)>& take);
 

@@ -7,15 +7,16 @@
 //
 //   P(s > 1) = P(s > b_1) P(s > b_2 | s > b_1) ... P(s > 1 | s > b_{m-1})
 //
-// of which no factor is rare. Each is the share S / N of N runs; the next level's N runs are chains from the S, of N / S
-// runs each (one more by lot, so that they are N), of moved words (run_words.hpp) that are taken where the run is still
-// beyond the level (conditional sampling: Papaioannou, Betz, Zwirglmaier and Straub 2015). Any scenario and any tracker
-// will do, smoothers and corrections too.
+// of which no factor is rare. Each is the share S / N of N runs; the next level's N runs are chains from the S, of N /
+// S runs each (one more by lot, so that they are N), of moved words (run_words.hpp) that are taken where the run is
+// still beyond the level (conditional sampling: Papaioannou, Betz, Zwirglmaier and Straub 2015). Any scenario and any
+// tracker will do, smoothers and corrections too.
 //
-// A pilot finds the levels, a tenth of its runs beyond each, and the size of the moves at each, 44 % of them taken. Its own
-// estimate is biased by having chosen, and is not used. The repetitions after it have these fixed, so that the product of
-// their shares is an unbiased estimate each, however badly the chains mix and whatever the pilot found (Del Moral 2004,
-// theorem 7.4.2), and they are independent: the mean over them is the figure, their spread its standard error.
+// A pilot finds the levels, a tenth of its runs beyond each, and the size of the moves at each, 44 % of them taken. Its
+// own estimate is biased by having chosen, and is not used. The repetitions after it have these fixed, so that the
+// product of their shares is an unbiased estimate each, however badly the chains mix and whatever the pilot found (Del
+// Moral 2004, theorem 7.4.2), and they are independent: the mean over them is the figure, their spread its standard
+// error.
 #pragma once
 
 #include <cstddef>
@@ -51,8 +52,9 @@ struct RareLoss {
 };
 
 /// Of the only tracker of the set. The same for any number of threads, and of other runs than any comparison's. Throws
-/// InputError where the rule has no threshold of a quantity of the tracker, where the runs of the scenario do not differ,
-/// and where the pilot does not get there: where losses are rarer than 1e-12, or too few runs are beyond a level.
+/// InputError where the rule has no threshold of a quantity of the tracker, where the runs of the scenario do not
+/// differ, and where the pilot does not get there: where losses are rarer than 1e-12, or too few runs are beyond a
+/// level.
 RareLoss rare_loss(const TrackerSet& tracker, const Scenario& scenario, const ScoringRule& rule,
                    const RareLossOptions& options);
 

@@ -36,7 +36,7 @@ class Mover {
 };
 
 void move_single(std::uint64_t& word, Mover& mover) {
-  const double z = mover.moved(normal_quantile(uniform_of(word) + 0x1p-54));
+  const double z = mover.moved(normal_quantile(std::min(uniform_of(word) + 0x1p-54, 1.0 - 0x1p-53)));
   word = word_of(0.5 * std::erfc(-z / std::numbers::sqrt2));
 }
 

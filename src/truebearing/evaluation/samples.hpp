@@ -17,7 +17,8 @@ namespace truebearing {
 
 /// So many runs are kept one by one.
 inline constexpr std::size_t kMostRunsApart = std::size_t{1} << 16;
-/// Of errors of all steps of all runs, of all trackers and quantities together, so many are kept one by one for medians:
+/// Of errors of all steps of all runs, of all trackers and quantities together, so many are kept one by one for
+/// medians:
 /// 160 megabytes.
 inline constexpr std::size_t kMostValuesApart = std::size_t{5} << 22;
 
@@ -43,9 +44,10 @@ class RunErrors {
   std::size_t in_last_ = 0;
 };
 
-/// The middle of values >= 0. So many are kept one by one; of more, those about the middle, and those on either side are
-/// counted. Where the middle wanders away from what was kept, or where blocks of runs come as bins (TallyStream::compact),
-/// it is told from bins as wide as 1/4096 of what they hold.
+/// The middle of values >= 0. So many are kept one by one; of more, those about the middle, and those on either side
+/// are counted. Where the middle wanders away from what was kept, or where blocks of runs come as bins
+/// (TallyStream::compact, or more values in a block than are kept), it is told from bins as wide as 1/4096 of what they
+/// hold.
 class MedianOf {
  public:
   explicit MedianOf(std::size_t kept_apart = kMostRunsApart) : kept_apart_(kept_apart) {}

@@ -24,7 +24,8 @@ struct Distance {
 template <int N>
 Distance distance(const BoundedVector& truth, const StepRecord& record, const int* in_truth, const int* in_estimate) {
   constexpr auto n = static_cast<std::size_t>(N);
-  // Plain arrays, and by elimination as in mahalanobis_squared(): this is done three times for every step of every tracker.
+  // Plain arrays, and by elimination as in mahalanobis_squared(): this is done three times for every step of every
+  // tracker.
   double d[n], P[n][n], squares = 0.0, squared_by_P = 0.0;
   bool valid = true;
   for (std::size_t j = 0; j < n; ++j) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // TallyStream: a tally of some runs as bytes, and the same bytes added to the tally of the runs before them. A tally
 // names its sums once, in exchange(), and this writes them or adds to them. So it does not matter in which thread or
-// process a block of runs was computed, nor on which machine of one kind (docs/scale.md): what adds the same blocks in the
-// same order has the same figures to the last bit.
+// process a block of runs was computed, nor on which machine of one kind (docs/scale.md): what adds the same blocks in
+// the same order has the same figures to the last bit.
 #pragma once
 
 #include <bit>
@@ -46,12 +46,12 @@ class TallyStream {
   std::size_t length(std::size_t length);
   std::uint64_t whole(std::uint64_t value) { return writes_ ? (put(value), 0) : get(); }
 
+  /// The same of one that is mostly small: seven bits in a byte.
+  std::uint64_t small(std::uint64_t value);
+
   /// A list of values that is written or read as one.
   void write(std::span<const double> values);
   std::vector<double> read();
-
-  /// The same of one that is mostly small: seven bits in a byte.
-  std::uint64_t small(std::uint64_t value);
 
   /// Item by item, by each(item): the list grows to the length of the one that is added.
   template <typename Item, typename Each>

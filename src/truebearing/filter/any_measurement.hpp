@@ -82,7 +82,8 @@ class ErasedMeasurement final : public SizedMeasurement<Model::kMeasurements> {
     model_ = model;
     this->z = value;
     const typename SizedMeasurement<M>::Covariance variances = model.R();
-    for (int i = 0; i < M * M; ++i) this->R.data()[i] = variances.data()[i];  // not by pairs what was written one by one
+    for (int i = 0; i < M * M; ++i)
+      this->R.data()[i] = variances.data()[i];  // not by pairs what was written one by one
   }
 
   Vector h(const double* x) const override { return model_->h(state(x)); }

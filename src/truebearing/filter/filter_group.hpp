@@ -36,8 +36,8 @@ class FilterGroup {
   virtual bool begin(std::size_t i, const double* x, const double* P) = 0;
   /// All cross dt_s seconds. False where one failed: then some have crossed and some have not.
   virtual bool predict(double dt_s) = 0;
-  /// Each takes its sensor's of `measurements`; gained[i] becomes the log likelihood of member i's innovation, up to the
-  /// power of 2 pi that all share, and minus infinity where it failed.
+  /// Each takes its sensor's of `measurements`; gained[i] becomes the log likelihood of member i's innovation, up to
+  /// the power of 2 pi that all share, and minus infinity where it failed.
   virtual void update(std::span<const AnyMeasurement* const> measurements, std::span<double> gained) = 0;
   /// x = sum w_i x_i / sum w, P = sum w_i / sum w (P_i + (x_i - x)(x_i - x)'), over the members with a weight. The list
   /// of weights is padded with zeros to a multiple of kLanes (core/simd_lanes.hpp).

@@ -60,8 +60,10 @@ class PackedModes final : public ModeBank {
     kernels::mix_modes<N>(modes_.data(), count(), weights_.data(), next_.data());
     find_transitions(dt_s);
     kernels::predict_modes<N>(transitions_.data(), count(), next_.data(), good_.data());
-    for (const Moved& moved : nonlinear_)
+    for (const Moved& moved : nonlinear_) {
+      if (!is_finite(moved.x)) block_of(good_, moved.lane).lane[moved.lane % kernels::kBlock] = 0;
       for (int i = 0; i < N; ++i) block_of(next_, moved.lane).x[i][moved.lane % kernels::kBlock] = moved.x[i];
+    }
     for (int lane = 0; lane < count(); ++lane)
       if (!is_valid(lane)) return false;
     modes_.swap(next_);

@@ -149,7 +149,8 @@ struct Mixing {
                                                       ModeBlock<N>* mixed) {
     using Some = Registers<kWidth>;
     using Doubles = typename Some::Doubles;
-    if (kWidth > 4 && count <= 4) return mix_loops<4>(modes, count, weights, mixed);
+    if constexpr (kWidth > 4)
+      if (count <= 4) return mix_loops<4>(modes, count, weights, mixed);
     const int blocks = blocks_of(count);
     for (int first = 0; first < count; first += kWidth) {
       List<Doubles, N> mean;
@@ -183,7 +184,8 @@ struct Mixing {
                                                          double* x, double* P) {
     using Some = Registers<kWidth>;
     using Doubles = typename Some::Doubles;
-    if (kWidth > 4 && count <= 4) return to_one_loops<4>(modes, count, weights, x, P);
+    if constexpr (kWidth > 4)
+      if (count <= 4) return to_one_loops<4>(modes, count, weights, x, P);
     List<typename Some::Total, N> means;
     Table<typename Some::Total, N, N> squares;
     for (int i = 0; i < N; ++i) {
@@ -224,7 +226,8 @@ struct Mixing {
                                                           ModeBlock<N>* modes, ModeMask* good) {
     using Some = Registers<kWidth>;
     using Doubles = typename Some::Doubles;
-    if (kWidth > 4 && count <= 4) return predict_loops<4>(transitions, count, modes, good);
+    if constexpr (kWidth > 4)
+      if (count <= 4) return predict_loops<4>(transitions, count, modes, good);
     for (int first = 0; first < count; first += kWidth) {
       const TransitionBlock<N>& transition = transitions[first / kBlock];
       List<Doubles, N> x, moved;
@@ -345,7 +348,8 @@ struct Taking {
                                                        ModeBlock<N>* updated, ModeMask* good) {
     using Some = Registers<kWidth>;
     using Doubles = typename Some::Doubles;
-    if (kWidth > 4 && count <= 4) return take_loops<4>(z, R, count, modes, updates, updated, good);
+    if constexpr (kWidth > 4)
+      if (count <= 4) return take_loops<4>(z, R, count, modes, updates, updated, good);
     for (int first = 0; first < count; first += kWidth) {
       UpdateBlock<N>& update = updates[first / kBlock];
       List<Doubles, N> x;
@@ -395,7 +399,8 @@ struct Combining {
                                                               const OfModes* weights, double* nu, double* S) {
     using Some = Registers<kWidth>;
     using Doubles = typename Some::Doubles;
-    if (kWidth > 4 && count <= 4) return innovations_loops<4>(updates, count, weights, nu, S);
+    if constexpr (kWidth > 4)
+      if (count <= 4) return innovations_loops<4>(updates, count, weights, nu, S);
     List<typename Some::Total, M> means;
     Table<typename Some::Total, M, M> squares;
     for (int m = 0; m < M; ++m) {
@@ -438,7 +443,8 @@ struct Combining {
                                                         const OfModes* weights, double* K) {
     using Some = Registers<kWidth>;
     using Doubles = typename Some::Doubles;
-    if (kWidth > 4 && count <= 4) return gains_loops<4>(updates, count, weights, K);
+    if constexpr (kWidth > 4)
+      if (count <= 4) return gains_loops<4>(updates, count, weights, K);
     Table<typename Some::Total, N, M> totals;
     for (int i = 0; i < N; ++i)
       for (int m = 0; m < M; ++m) totals[i][m].begin();

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The arithmetic of PackedModes: the filters of eight modes side by side, each in a lane of its own, as KalmanFilter in
 // Joseph's form works on one (covariance_form.hpp) and in the same order, so to the same bits, whether a register holds
-// two, four or eight of them. A last block that is not full repeats the last mode.
+// two, four or eight of them. Lanes behind the last mode that are in a register with it repeat it; nothing
+// reads them.
 #pragma once
 
 #include <cstddef>
@@ -60,8 +61,8 @@ struct UpdateBlock {
   ModeMask has_gain;       ///< S has kept its digits, and the likelihood is finite
 };
 
-/// The mixtures that the modes begin with: weights[i blocks + b], of mode i in those of block b. Equations (11.6.6-8) to
-/// (-10) of Bar-Shalom, Li and Kirubarajan 2001.
+/// The mixtures that the modes begin with: weights[i blocks + b], of mode i in those of block b. Equations (11.6.6-8)
+/// to (-10) of Bar-Shalom, Li and Kirubarajan 2001.
 template <int N>
 void mix_modes(const ModeBlock<N>* modes, int count, const OfModes* weights, ModeBlock<N>* mixed);
 
@@ -70,8 +71,8 @@ void mix_modes(const ModeBlock<N>* modes, int count, const OfModes* weights, Mod
 template <int N>
 void predict_modes(const TransitionBlock<N>* transitions, int count, ModeBlock<N>* modes, ModeMask* good);
 
-/// K, S and the likelihood, and x and P with the measurement, from `modes` to `updated`: R (M x M) by columns. z (M) of a
-/// position, H = [I, 0]; otherwise nu and H are told. `good` as of a prediction.
+/// K, S and the likelihood, and x and P with the measurement, from `modes` to `updated`: R (M x M) by columns. z (M) of
+/// a position, H = [I, 0]; otherwise nu and H are told. `good` as of a prediction.
 template <int N, int M, bool kPosition>
 void update_modes(const double* z, const double* R, int count, const ModeBlock<N>* modes, UpdateBlock<N>* updates,
                   ModeBlock<N>* updated, ModeMask* good);
@@ -80,7 +81,8 @@ void update_modes(const double* z, const double* R, int count, const ModeBlock<N
 template <int N>
 void mix_to_one(const ModeBlock<N>* modes, int count, const OfModes* weights, double* x, double* P);
 
-/// nu (M) and S (M x M) of the mixture of what the modes that have a weight expected, and their weighted K (N x M).
+/// nu (M) and S (M x M) of the mixture of what the modes expected, and their weighted K (N x M). What a mode without a
+/// weight expected must be finite too.
 template <int N, int M>
 void mix_innovations(const UpdateBlock<N>* updates, int count, const OfModes* weights, double* nu, double* S);
 template <int N, int M>

@@ -29,8 +29,11 @@ class SharedCovarianceGroup final : public FilterGroup {
         x_(N * stride_),
         transitions_(motions_.size()) {
     families_.reserve(members_.size());
-    for (std::size_t i = 0; i < members_.size(); ++i)
-      families_.push_back({i, i + 1, KalmanFilter<N>(State::Zero(), Covariance::Identity())});
+    for (std::size_t i = 0; i < members_.size(); ++i) {
+      if (i == 0 || members_[i] != members_[i - 1])
+        families_.push_back({i, i, KalmanFilter<N>(State::Zero(), Covariance::Identity())});
+      ++families_.back().end;
+    }
   }
 
   int states() const override { return N; }

@@ -22,8 +22,8 @@ bool all_finite(const double* values, std::size_t padded);
 
 double sum_of(const double* values, std::size_t count);
 
-/// mean = sum w x / sum w (n) and spread = sum w (x - mean)(x - mean)' / sum w (n x n) of the members that have a weight;
-/// `weights` has the length of the stride, and sum sum_w.
+/// mean = sum w x / sum w (n) and spread = sum w (x - mean)(x - mean)' / sum w (n x n) of the members that have a
+/// weight; `weights` has the length of the stride, and sum sum_w.
 template <int N>
 void mix_means(const double* weights, double sum_w, const double* x, std::size_t stride, double* mean, double* spread);
 

@@ -4,8 +4,8 @@
 
 namespace truebearing {
 
-/// residuals(:, i) = residual(h(x_i), z_0) of RangeBearing (2 x count, by columns), bearings within 5e-16 rad of h's own.
-/// x_i begins i stride numbers after X; at most kMostPoints of them.
+/// residuals(:, i) = residual(h(x_i), z_0) of RangeBearing (2 x count, by columns), bearings within 5e-16 rad of h's
+/// own. x_i begins i stride numbers after X; at most kMostPoints of them.
 void range_bearing_residuals(const double* X, int stride, int count, const double* site_m, const double* z_0,
                              double* residuals);
 

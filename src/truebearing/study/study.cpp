@@ -26,8 +26,8 @@ void add_texts(const toml::node& node, const std::filesystem::path& folder, std:
     for (const auto& [key, value] : *table) add_texts(value, folder, files);
 }
 
-// [sensors.NAME] clock_offset_s, in the order of their names; empty where all clocks agree. What is no number is refused
-// where a tracker reads the table.
+// [sensors.NAME] clock_offset_s, in the order of their names; empty where all clocks agree. What is no number is
+// refused where a tracker reads the table.
 std::vector<double> clock_offsets_of(const toml::table* sensors) {
   std::vector<double> offsets;
   if (!sensors) return offsets;

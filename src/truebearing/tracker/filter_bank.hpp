@@ -33,8 +33,8 @@ class FilterBank final : public Tracker {
   /// then. False where it cannot: the next usable measurement is then the first.
   using Supposition = std::function<bool(const Measurement&, const std::optional<TargetGuess>&, std::span<Hypothesis>)>;
 
-  /// One hypothesis for each member of the group, whose sensors these are. They take the same measurements, what is a value to the first
-  /// is one to all. The priors belong to start_time_s.
+  /// One hypothesis for each member of the group, whose sensors these are. They take the same measurements, what is a
+  /// value to the first is one to all. The priors belong to start_time_s.
   FilterBank(const StateSpace& space, std::unique_ptr<FilterGroup> group,
              std::vector<std::unique_ptr<AnySensor>> sensors, std::vector<Hypothesis> hypotheses,
              double start_time_s = 0.0);

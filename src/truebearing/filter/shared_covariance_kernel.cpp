@@ -13,7 +13,7 @@ namespace {
 constexpr double kNone = -std::numeric_limits<double>::infinity();
 
 template <int N>
-struct Moving {
+struct MovingMeans {
   [[gnu::always_inline]] static inline void move_loops(const double* F, double* x, std::size_t count,
                                                        std::size_t stride) {
     constexpr auto n = static_cast<std::size_t>(N);
@@ -43,7 +43,7 @@ struct Moving {
 TRUEBEARING_FOR_AVX2(examine, (const double* values, std::size_t padded, bool& finite), (values, padded, finite))
 
 template <int N, int M>
-struct Taking {
+struct TakingPositions {
   [[gnu::always_inline]] static inline void take_loops(const double* z, const double* K, const double* inverse_S,
                                                        double log_determinant, double* x, std::size_t count,
                                                        std::size_t stride, double* gained) {
@@ -74,7 +74,7 @@ struct Taking {
 };
 
 template <int N>
-struct Mixing {
+struct MixingMeans {
   // Of the members without a weight nothing: they may be so far off that they are not finite.
   [[gnu::always_inline]] static inline void load_weighed(const Lanes& weight, const double* from, Lanes& x) {
     load(from, x);
@@ -117,13 +117,13 @@ struct Mixing {
 
 template <int N>
 void move_means(const double* F, double* x, std::size_t count, std::size_t stride) {
-  Moving<N>().move(F, x, count, stride);
+  MovingMeans<N>().move(F, x, count, stride);
 }
 
 template <int N, int M>
 void take_position(const double* z, const double* K, const double* inverse_S, double log_determinant, double* x,
                    std::size_t count, std::size_t stride, double* gained) {
-  Taking<N, M>().take(z, K, inverse_S, log_determinant, x, count, stride, gained);
+  TakingPositions<N, M>().take(z, K, inverse_S, log_determinant, x, count, stride, gained);
 }
 
 bool all_finite(const double* values, std::size_t padded) {
@@ -147,7 +147,7 @@ double sum_of(const double* values, std::size_t count) {
 
 template <int N>
 void mix_means(const double* weights, double sum_w, const double* x, std::size_t stride, double* mean, double* spread) {
-  Mixing<N>().mix(weights, sum_w, x, stride, mean, spread);
+  MixingMeans<N>().mix(weights, sum_w, x, stride, mean, spread);
 }
 
 #define TRUEBEARING_MEANS(N, M)                                                                                \

@@ -13,9 +13,9 @@ namespace truebearing {
 template <int kCount>
 [[gnu::always_inline]] inline void logarithm(typename VectorOf<kCount>::Doubles& x) {
   using Doubles = typename VectorOf<kCount>::Doubles;
-  using Bits = typename VectorOf<kCount>::Bits;
+  using Bits [[gnu::vector_size(kCount * sizeof(std::uint64_t))]] = std::uint64_t;  // of any x: they may run over
   constexpr double kInteger = 0x1p52;  // the last digits of a sum with it are an integer
-  constexpr std::int64_t kOne = 0x3ff0000000000000, kRootOfHalf = 0x3fe6a09e667f3bcd, kDigits = 0x000fffffffffffff;
+  constexpr std::uint64_t kOne = 0x3ff0000000000000, kRootOfHalf = 0x3fe6a09e667f3bcd, kDigits = 0x000fffffffffffff;
   const Bits bits = reinterpret_cast<Bits>(x) + (kOne - kRootOfHalf);  // m in [2^-1/2, 2^1/2)
   const Doubles m = reinterpret_cast<Doubles>((bits & kDigits) + kRootOfHalf);
   const Bits exponent = (bits >> 52) | reinterpret_cast<Bits>(Doubles{} + kInteger);

@@ -48,7 +48,7 @@ template <int kRules>
     load(phi + j * kBlockStride, strength);
     strength -= peak;
     strength = strength < kLowestExponent ? Lanes{} + kLowestExponent : strength;
-    exponential(strength);
+    exponential<kLanes>(strength);
     sum += strength;
     store(strength, phi + j * kBlockStride);
   }

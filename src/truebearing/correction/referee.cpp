@@ -4,29 +4,20 @@
 #include <cmath>
 #include <type_traits>
 
+#include "truebearing/core/with_count.hpp"
+
 namespace truebearing {
 
 void Referee::judge(const StepRecord& base, const RefereeOptions& options) {
   if (base.status != StepStatus::ok || !base.innovation) return;
   const Eigen::Index m = base.x.size() / 2;
   if (base.innovation->z.size() != m) return;
-  const auto judge_of = [&]<int M>(std::integral_constant<int, M>) {
-    judge_position<M>(base, options);
-    judge_velocity<M>(base, options);
-  };
-  static_assert(kMaxDimension / 2 == 5);
-  switch (m) {
-    case 1:
-      return judge_of(std::integral_constant<int, 1>{});
-    case 2:
-      return judge_of(std::integral_constant<int, 2>{});
-    case 3:
-      return judge_of(std::integral_constant<int, 3>{});
-    case 4:
-      return judge_of(std::integral_constant<int, 4>{});
-    case 5:
-      return judge_of(std::integral_constant<int, 5>{});
-  }
+  with_count(static_cast<int>(m), [&]<int M>(std::integral_constant<int, M>) {
+    if constexpr (M >= 1 && 2 * M <= kMaxDimension) {
+      judge_position<M>(base, options);
+      judge_velocity<M>(base, options);
+    }
+  });
 }
 
 template <int M>

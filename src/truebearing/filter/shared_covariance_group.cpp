@@ -8,6 +8,7 @@
 #include "truebearing/core/constants.hpp"
 #include "truebearing/core/simd_lanes.hpp"
 #include "truebearing/core/with_count.hpp"
+#include "truebearing/filter/factorization.hpp"
 #include "truebearing/filter/kalman.hpp"
 #include "truebearing/filter/shared_covariance_kernel.hpp"
 
@@ -72,9 +73,10 @@ class SharedCovarianceGroup final : public FilterGroup {
       const Update<N, M> common =
           family.filter.update(detail::MeasuredPosition<N, M>{position.R}, Eigen::Matrix<double, M, 1>::Zero().eval());
       if (common.status != StepStatus::ok) continue;
-      const Eigen::Matrix<double, M, M> inverse_S = common.S.inverse();
-      kernels::take_position<N, M>(position.z.data(), common.K.data(), inverse_S.data(), log_determinant(common.S),
-                                   x_.data() + family.first, family.size(), stride_, of_family);
+      const Ldlt<M, double> factors(common.S, Eigen::Matrix<double, M, 1>::Zero());
+      kernels::take_position<N, M>(position.z.data(), common.K.data(), factors.L.data(), factors.inverse_D.data(),
+                                   log_determinant(common.S), x_.data() + family.first, family.size(), stride_,
+                                   of_family);
     }
   }
 

@@ -44,18 +44,19 @@ TRUEBEARING_FOR_AVX2(examine, (const double* values, std::size_t padded, bool& f
 
 template <int N, int M>
 struct TakingPositions {
-  [[gnu::always_inline]] static inline void take_loops(const double* z, const double* K, const double* inverse_S,
-                                                       double log_determinant, double* x, std::size_t count,
-                                                       std::size_t stride, double* gained) {
+  [[gnu::always_inline]] static inline void take_loops(const double* z, const double* K, const double* L,
+                                                       const double* inverse_D, double log_determinant, double* x,
+                                                       std::size_t count, std::size_t stride, double* gained) {
     constexpr auto n = static_cast<std::size_t>(N), m = static_cast<std::size_t>(M);
 #pragma omp simd
     for (std::size_t i = 0; i < count; ++i) {
       double nu[m], nis = 0.0;
       for (std::size_t c = 0; c < m; ++c) nu[c] = z[c] - x[c * stride + i];
-      for (std::size_t c = 0; c < m; ++c) {
-        double of_column = 0.0;
-        for (std::size_t r = 0; r < m; ++r) of_column += inverse_S[r + c * m] * nu[r];
-        nis += of_column * nu[c];
+      double y[m];  // L^-1 nu
+      for (std::size_t r = 0; r < m; ++r) {
+        y[r] = nu[r];
+        for (std::size_t c = 0; c < r; ++c) y[r] -= L[r + c * m] * y[c];
+        nis += y[r] * y[r] * inverse_D[r];
       }
       const double won = -0.5 * (nis + log_determinant);
       const bool valid = won - won == 0.0;
@@ -68,9 +69,9 @@ struct TakingPositions {
     }
   }
   TRUEBEARING_FOR_AVX2(take,
-                       (const double* z, const double* K, const double* inverse_S, double log_determinant, double* x,
-                        std::size_t count, std::size_t stride, double* gained),
-                       (z, K, inverse_S, log_determinant, x, count, stride, gained))
+                       (const double* z, const double* K, const double* L, const double* inverse_D,
+                        double log_determinant, double* x, std::size_t count, std::size_t stride, double* gained),
+                       (z, K, L, inverse_D, log_determinant, x, count, stride, gained))
 };
 
 template <int N>
@@ -121,9 +122,9 @@ void move_means(const double* F, double* x, std::size_t count, std::size_t strid
 }
 
 template <int N, int M>
-void take_position(const double* z, const double* K, const double* inverse_S, double log_determinant, double* x,
-                   std::size_t count, std::size_t stride, double* gained) {
-  TakingPositions<N, M>().take(z, K, inverse_S, log_determinant, x, count, stride, gained);
+void take_position(const double* z, const double* K, const double* L, const double* inverse_D, double log_determinant,
+                   double* x, std::size_t count, std::size_t stride, double* gained) {
+  TakingPositions<N, M>().take(z, K, L, inverse_D, log_determinant, x, count, stride, gained);
 }
 
 bool all_finite(const double* values, std::size_t padded) {
@@ -150,10 +151,10 @@ void mix_means(const double* weights, double sum_w, const double* x, std::size_t
   MixingMeans<N>().mix(weights, sum_w, x, stride, mean, spread);
 }
 
-#define TRUEBEARING_MEANS(N, M)                                                                                \
-  template void move_means<N>(const double*, double*, std::size_t, std::size_t);                               \
-  template void take_position<N, M>(const double*, const double*, const double*, double, double*, std::size_t, \
-                                    std::size_t, double*);                                                     \
+#define TRUEBEARING_MEANS(N, M)                                                                                  \
+  template void move_means<N>(const double*, double*, std::size_t, std::size_t);                                 \
+  template void take_position<N, M>(const double*, const double*, const double*, const double*, double, double*, \
+                                    std::size_t, std::size_t, double*);                                          \
   template void mix_means<N>(const double*, double, const double*, std::size_t, double*, double*)
 TRUEBEARING_MEANS(2, 1);
 TRUEBEARING_MEANS(3, 1);

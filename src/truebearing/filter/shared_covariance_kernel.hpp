@@ -12,10 +12,10 @@ template <int N>
 void move_means(const double* F, double* x, std::size_t count, std::size_t stride);
 
 /// nu = z - x[0, m), gained = -(nu' S^-1 nu + log |S|) / 2, x = x + K nu. Where gained is not finite it becomes minus
-/// infinity, and x stays. K: n x m, S^-1: m x m, by columns.
+/// infinity, and x stays. K: n x m, by columns; S = L D L' (Ldlt), of which L is m x m, by columns, its lower part.
 template <int N, int M>
-void take_position(const double* z, const double* K, const double* inverse_S, double log_determinant, double* x,
-                   std::size_t count, std::size_t stride, double* gained);
+void take_position(const double* z, const double* K, const double* L, const double* inverse_D, double log_determinant,
+                   double* x, std::size_t count, std::size_t stride, double* gained);
 
 /// Are all of them finite? So many that kLanes (core/simd_lanes.hpp) divides it.
 bool all_finite(const double* values, std::size_t padded);

@@ -45,7 +45,7 @@ TRUEBEARING_FOR_AVX2(gain, (const double* gained, std::size_t padded, double* lo
     Lanes logarithm;
     load(log_weights + i, logarithm);
     Lanes weight = logarithm;
-    exponential(weight);
+    exponential<kLanes>(weight);
     weight = logarithm >= kLeast ? weight : Lanes{};
     all += weight;
     store(weight, weights + i);

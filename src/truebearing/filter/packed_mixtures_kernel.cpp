@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+// The mixtures of packed_modes_kernel.hpp.
+#include "truebearing/filter/packed_modes_kernel.hpp"
+#include "truebearing/filter/packed_registers.hpp"
+
+namespace truebearing::kernels {
+namespace {
+
+template <int N>
+struct Mixing {
+  // Coefficient i of mode m stands i kBlock further: x, then P by rows.
+  [[gnu::always_inline]] static const double* of_mode(const ModeBlock<N>* modes, int m) {
+    return modes[m / kBlock].x[0].lane + m % kBlock;
+  }
+
+  template <int kWidth>
+  [[gnu::always_inline]] static inline void mix_loops(const ModeBlock<N>* modes, int count, const OfModes* weights,
+                                                      ModeBlock<N>* mixed) {
+    using Some = Registers<kWidth>;
+    using Doubles = typename Some::Doubles;
+    if constexpr (kWidth > 4)
+      if (count <= 4) return mix_loops<4>(modes, count, weights, mixed);
+    const int blocks = blocks_of(count);
+    for (int first = 0; first < count; first += kWidth) {
+      List<Doubles, N> mean;
+      Table<Doubles, N, N> P;
+      Doubles weight;
+      for (int i = 0; i < N; ++i) {
+        mean[i] = Doubles{};
+        for (int j = 0; j <= i; ++j) P[i][j] = Doubles{};
+      }
+      for (int m = 0; m < count; ++m) {
+        Some::load(weights[m * blocks + first / kBlock], first, weight);
+        const double* x = of_mode(modes, m);
+        for (int i = 0; i < N; ++i) mean[i] += weight * x[i * kBlock];
+      }
+      for (int m = 0; m < count; ++m) {
+        Some::load(weights[m * blocks + first / kBlock], first, weight);
+        const double* x = of_mode(modes, m);
+        List<Doubles, N> d;
+        for (int i = 0; i < N; ++i) d[i] = x[i * kBlock] - mean[i];
+        for (int i = 0; i < N; ++i)
+          for (int j = 0; j <= i; ++j) P[i][j] += weight * (x[(N + i * N + j) * kBlock] + d[i] * d[j]);
+      }
+      Some::store(mean, P, first, mixed[first / kBlock]);
+    }
+  }
+  TRUEBEARING_FOR_WIDEST(mix, (const ModeBlock<N>* modes, int count, const OfModes* weights, ModeBlock<N>* mixed),
+                         (modes, count, weights, mixed))
+
+  template <int kWidth>
+  [[gnu::always_inline]] static inline void to_one_loops(const ModeBlock<N>* modes, int count, const OfModes* weights,
+                                                         double* x, double* P) {
+    using Some = Registers<kWidth>;
+    using Doubles = typename Some::Doubles;
+    if constexpr (kWidth > 4)
+      if (count <= 4) return to_one_loops<4>(modes, count, weights, x, P);
+    List<typename Some::Total, N> means;
+    Table<typename Some::Total, N, N> squares;
+    for (int i = 0; i < N; ++i) {
+      means[i].begin();
+      for (int j = 0; j <= i; ++j) squares[i][j].begin();
+    }
+    for (int first = 0; first < count; first += kWidth) {
+      Doubles weight, value;
+      Some::load(weights[first / kBlock], first, weight);
+      for (int i = 0; i < N; ++i) {
+        Some::load(modes[first / kBlock].x[i], first, value);
+        means[i].add(first, weight * value);
+      }
+    }
+    for (int i = 0; i < N; ++i) x[i] = means[i].sum();
+    for (int first = 0; first < count; first += kWidth) {
+      Doubles weight, value;
+      List<Doubles, N> d;
+      Some::load(weights[first / kBlock], first, weight);
+      for (int i = 0; i < N; ++i) {
+        Some::load(modes[first / kBlock].x[i], first, d[i]);
+        d[i] -= x[i];
+      }
+      for (int i = 0; i < N; ++i)
+        for (int j = 0; j <= i; ++j) {
+          Some::load(modes[first / kBlock].P[i][j], first, value);
+          squares[i][j].add(first, weight * (value + d[i] * d[j]));
+        }
+    }
+    for (int i = 0; i < N; ++i)
+      for (int j = 0; j <= i; ++j) P[i + j * N] = P[j + i * N] = squares[i][j].sum();
+  }
+  TRUEBEARING_FOR_WIDEST(to_one, (const ModeBlock<N>* modes, int count, const OfModes* weights, double* x, double* P),
+                         (modes, count, weights, x, P))
+};
+
+// What the modes expected, by weights.
+template <int N, int M>
+struct Combining {
+  template <int kWidth>
+  [[gnu::always_inline]] static inline void innovations_loops(const UpdateBlock<N>* updates, int count,
+                                                              const OfModes* weights, double* nu, double* S) {
+    using Some = Registers<kWidth>;
+    using Doubles = typename Some::Doubles;
+    if constexpr (kWidth > 4)
+      if (count <= 4) return innovations_loops<4>(updates, count, weights, nu, S);
+    List<typename Some::Total, M> means;
+    Table<typename Some::Total, M, M> squares;
+    for (int m = 0; m < M; ++m) {
+      means[m].begin();
+      for (int l = 0; l <= m; ++l) squares[m][l].begin();
+    }
+    for (int first = 0; first < count; first += kWidth) {
+      Doubles weight, value;
+      Some::load(weights[first / kBlock], first, weight);
+      for (int m = 0; m < M; ++m) {
+        Some::load(updates[first / kBlock].nu[m], first, value);
+        means[m].add(first, weight * value);
+      }
+    }
+    for (int m = 0; m < M; ++m) nu[m] = means[m].sum();
+    for (int first = 0; first < count; first += kWidth) {
+      Doubles weight, value;
+      List<Doubles, M> d;
+      Some::load(weights[first / kBlock], first, weight);
+      for (int m = 0; m < M; ++m) {
+        Some::load(updates[first / kBlock].nu[m], first, d[m]);
+        d[m] -= nu[m];
+      }
+      for (int m = 0; m < M; ++m)
+        for (int l = 0; l <= m; ++l) {
+          Some::load(updates[first / kBlock].S[m][l], first, value);
+          value += d[m] * d[l];
+          squares[m][l].add(first, weight * value);
+        }
+    }
+    for (int m = 0; m < M; ++m)
+      for (int l = 0; l <= m; ++l) S[m + l * M] = S[l + m * M] = squares[m][l].sum();
+  }
+  TRUEBEARING_FOR_WIDEST(innovations,
+                         (const UpdateBlock<N>* updates, int count, const OfModes* weights, double* nu, double* S),
+                         (updates, count, weights, nu, S))
+
+  template <int kWidth>
+  [[gnu::always_inline]] static inline void gains_loops(const UpdateBlock<N>* updates, int count,
+                                                        const OfModes* weights, double* K) {
+    using Some = Registers<kWidth>;
+    using Doubles = typename Some::Doubles;
+    if constexpr (kWidth > 4)
+      if (count <= 4) return gains_loops<4>(updates, count, weights, K);
+    Table<typename Some::Total, N, M> totals;
+    for (int i = 0; i < N; ++i)
+      for (int m = 0; m < M; ++m) totals[i][m].begin();
+    for (int first = 0; first < count; first += kWidth) {
+      Doubles weight, value;
+      Some::load(weights[first / kBlock], first, weight);
+      for (int i = 0; i < N; ++i)
+        for (int m = 0; m < M; ++m) {
+          Some::load(updates[first / kBlock].K[i][m], first, value);
+          totals[i][m].add(first, weight * value);
+        }
+    }
+    for (int i = 0; i < N; ++i)
+      for (int m = 0; m < M; ++m) K[i + m * N] = totals[i][m].sum();
+  }
+  TRUEBEARING_FOR_WIDEST(gains, (const UpdateBlock<N>* updates, int count, const OfModes* weights, double* K),
+                         (updates, count, weights, K))
+};
+
+}  // namespace
+
+template <int N>
+void mix_modes(const ModeBlock<N>* modes, int count, const OfModes* weights, ModeBlock<N>* mixed) {
+  Mixing<N>().mix(modes, count, weights, mixed);
+}
+
+template <int N>
+void mix_to_one(const ModeBlock<N>* modes, int count, const OfModes* weights, double* x, double* P) {
+  Mixing<N>().to_one(modes, count, weights, x, P);
+}
+
+template <int N, int M>
+void mix_innovations(const UpdateBlock<N>* updates, int count, const OfModes* weights, double* nu, double* S) {
+  Combining<N, M>().innovations(updates, count, weights, nu, S);
+}
+
+template <int N, int M>
+void mix_gains(const UpdateBlock<N>* updates, int count, const OfModes* weights, double* K) {
+  Combining<N, M>().gains(updates, count, weights, K);
+}
+
+#define TRUEBEARING_PACKED_INNOVATIONS(N, M)                                                         \
+  template void mix_innovations<N, M>(const UpdateBlock<N>*, int, const OfModes*, double*, double*); \
+  template void mix_gains<N, M>(const UpdateBlock<N>*, int, const OfModes*, double*)
+#define TRUEBEARING_PACKED_MIXTURES(N)                                                     \
+  template void mix_modes<N>(const ModeBlock<N>*, int, const OfModes*, ModeBlock<N>*);     \
+  template void mix_to_one<N>(const ModeBlock<N>*, int, const OfModes*, double*, double*); \
+  TRUEBEARING_PACKED_INNOVATIONS(N, 1)
+TRUEBEARING_PACKED_MIXTURES(2);
+TRUEBEARING_PACKED_INNOVATIONS(2, 2);
+TRUEBEARING_PACKED_MIXTURES(4);
+TRUEBEARING_PACKED_INNOVATIONS(4, 2);
+TRUEBEARING_PACKED_INNOVATIONS(4, 3);
+TRUEBEARING_PACKED_MIXTURES(6);
+TRUEBEARING_PACKED_INNOVATIONS(6, 2);
+TRUEBEARING_PACKED_INNOVATIONS(6, 3);
+TRUEBEARING_PACKED_INNOVATIONS(6, 4);
+
+}  // namespace truebearing::kernels

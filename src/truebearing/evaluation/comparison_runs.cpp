@@ -52,34 +52,49 @@ std::size_t ComparisonRuns::runs_in(std::size_t block) const {
 }
 
 std::string ComparisonRuns::run(std::size_t block, std::size_t worker) {
-  std::optional<TrackerSet>& copy = copies_[worker];
-  if (!copy) copy.emplace(trackers_.fresh());
+  constexpr std::size_t kMostTogether = kPackLanes;
+  std::unique_ptr<TrackerSetPack>& copies = copies_[worker];
+  if (!copies) copies = std::make_unique<TrackerSetPack>(trackers_, std::min(kMostTogether, runs_of_block_));
   const bool compact = runs_of_block_ > kMostRunsEvenlyShared;
   ComparisonTally tally(trackers_, scorers_, options_, compact ? kMostRunsApart : kMostValuesApart, options_.details);
-  const std::size_t first = block % blocks_of_set_ * runs_of_block_;
-  for (std::size_t i = 0; i < runs_in(block); ++i) tally.add(outcome(set_of(block), first + i, *copy));
+  const std::size_t first = block % blocks_of_set_ * runs_of_block_, count = runs_in(block);
+  for (std::size_t done = 0; done < count; done += copies->size())
+    for (const RunOutcome& outcome :
+         outcomes(set_of(block), first + done, std::min(copies->size(), count - done), *copies))
+      tally.add(outcome);
   return tally.bytes(compact);
 }
 
-RunOutcome ComparisonRuns::outcome(std::size_t set, std::size_t run, TrackerSet& copy) const {
-  const Recording recording = scenarios_[set].scenario->simulate({options_.seed, options_.role, run});
-  RunOutcome outcome;
-  if (options_.details) {
-    outcome.corrections = correction_tallies(copy);
-    outcome.scores = score_recording(copy, scorers_, recording, options_.scoring, [&](std::size_t step) {
-      for (std::size_t i = 0; i < outcome.corrections.size(); ++i)
-        if (outcome.corrections[i])
-          outcome.corrections[i]->take(step, copy.records(static_cast<int>(i)),
-                                       copy.correction(static_cast<int>(i))->accounts());
-    });
-  } else {
-    outcome.scores = score_recording(copy, scorers_, recording, options_.scoring);
+std::vector<RunOutcome> ComparisonRuns::outcomes(std::size_t set, std::size_t first, std::size_t count,
+                                                 TrackerSetPack& copies) const {
+  std::vector<RunOutcome> outcomes(count);
+  std::vector<Recording> recordings;
+  for (std::size_t i = 0; i < count; ++i) {
+    recordings.push_back(scenarios_[set].scenario->simulate({options_.seed, options_.role, first + i}));
+    if (options_.details) outcomes[i].corrections = correction_tallies(copies.set(i));
   }
-  if (options_.cramer_rao)
-    outcome.bound = options_.cramer_rao->variances(recording, steps_at(recording, options_.scoring.times_s));
-  if (options_.angle_bound)
-    outcome.angle_bound = options_.angle_bound->variances(recording, options_.scoring.from_step);
-  return outcome;
+  std::function<void(std::size_t, std::size_t)> tell_details;
+  if (options_.details)
+    tell_details = [&](std::size_t i, std::size_t step) {
+      const TrackerSet& copy = copies.set(i);
+      auto& tallies = outcomes[i].corrections;
+      for (std::size_t entry = 0; entry < tallies.size(); ++entry)
+        if (tallies[entry])
+          tallies[entry]->take(step, copy.records(static_cast<int>(entry)),
+                               copy.correction(static_cast<int>(entry))->accounts());
+    };
+  std::vector<std::vector<RunScore>> scores =
+      score_recordings(copies, scorers_, recordings, options_.scoring, tell_details);
+  for (std::size_t i = 0; i < count; ++i) {
+    RunOutcome& outcome = outcomes[i];
+    const Recording& recording = recordings[i];
+    outcome.scores = std::move(scores[i]);
+    if (options_.cramer_rao)
+      outcome.bound = options_.cramer_rao->variances(recording, steps_at(recording, options_.scoring.times_s));
+    if (options_.angle_bound)
+      outcome.angle_bound = options_.angle_bound->variances(recording, options_.scoring.from_step);
+  }
+  return outcomes;
 }
 
 void run_blocks(ComparisonRuns& runs, const BlockRange& blocks, const Progress& progress,

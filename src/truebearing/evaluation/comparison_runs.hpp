@@ -6,7 +6,7 @@
 
 #include <cstddef>
 #include <functional>
-#include <optional>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -41,7 +41,7 @@ class ComparisonRuns {
   const std::vector<Scorer>& scorers() const { return scorers_; }
 
  private:
-  RunOutcome outcome(std::size_t set, std::size_t run, TrackerSet& copy) const;
+  std::vector<RunOutcome> outcomes(std::size_t set, std::size_t first, std::size_t count, TrackerSetPack& copies) const;
 
   const TrackerSet& trackers_;
   const std::vector<NamedScenario>& scenarios_;
@@ -49,7 +49,7 @@ class ComparisonRuns {
   std::vector<Scorer> scorers_;
   std::size_t runs_of_block_;
   std::size_t blocks_of_set_;
-  std::vector<std::optional<TrackerSet>> copies_;  // [worker]
+  std::vector<std::unique_ptr<TrackerSetPack>> copies_;  // [worker]
 };
 
 /// Blocks first, first + stride and so on, before last.

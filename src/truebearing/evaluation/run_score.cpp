@@ -106,25 +106,69 @@ void check_targets(const Recording& recording, const ScoringRule& rule) {
                      "no times_s, or a recording of one target");
 }
 
+// Scores all trackers in one run.
+class RunsScorer {
+ public:
+  RunsScorer(const std::vector<Scorer>& scorers, const Recording& recording, const ScoringRule& rule) : rule_(rule) {
+    check_targets(recording, rule);
+    for (const Scorer& scorer : scorers) runs_.emplace_back(scorer, recording, rule);
+  }
+
+  // False where that step is not scored.
+  bool take(std::size_t step, const TrackerSet& trackers) {
+    if (static_cast<int>(step) + 1 < rule_.from_step) return false;
+    for (std::size_t i = 0; i < runs_.size(); ++i) runs_[i].take(step, trackers.records(static_cast<int>(i)));
+    return true;
+  }
+
+  std::vector<RunScore> finish(const TrackerSet& trackers) {
+    std::vector<RunScore> scores;
+    for (std::size_t i = 0; i < runs_.size(); ++i)
+      scores.push_back(runs_[i].finish(trackers.events(static_cast<int>(i))));
+    return scores;
+  }
+
+ private:
+  const ScoringRule& rule_;
+  std::vector<RunScorer> runs_;
+};
+
 }  // namespace
 
 std::vector<RunScore> score_recording(TrackerSet& trackers, const std::vector<Scorer>& scorers,
                                       const Recording& recording, const ScoringRule& rule,
                                       const std::function<void(std::size_t step)>& scored) {
-  check_targets(recording, rule);
-  std::vector<RunScorer> runs;
-  for (const Scorer& scorer : scorers) runs.emplace_back(scorer, recording, rule);
-
+  RunsScorer runs(scorers, recording, rule);
   trackers.reset();
   trackers.foresee(recording.measurements);
   for (std::size_t step = 0; step < recording.measurements.size(); ++step) {
     trackers.step(recording.measurements[step]);
-    if (static_cast<int>(step) + 1 < rule.from_step) continue;
-    for (std::size_t i = 0; i < runs.size(); ++i) runs[i].take(step, trackers.records(static_cast<int>(i)));
-    if (scored) scored(step);
+    if (runs.take(step, trackers) && scored) scored(step);
   }
-  std::vector<RunScore> scores;
-  for (std::size_t i = 0; i < runs.size(); ++i) scores.push_back(runs[i].finish(trackers.events(static_cast<int>(i))));
+  return runs.finish(trackers);
+}
+
+std::vector<std::vector<RunScore>> score_recordings(
+    TrackerSetPack& trackers, const std::vector<Scorer>& scorers, std::span<const Recording> recordings,
+    const ScoringRule& rule, const std::function<void(std::size_t recording, std::size_t step)>& scored) {
+  std::vector<RunsScorer> runs;
+  std::size_t steps = 0;
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    runs.emplace_back(scorers, recordings[i], rule);
+    trackers.set(i).reset();
+    trackers.set(i).foresee(recordings[i].measurements);
+    steps = std::max(steps, recordings[i].measurements.size());
+  }
+  std::vector<const Measurement*> measurements(trackers.size());
+  for (std::size_t step = 0; step < steps; ++step) {
+    for (std::size_t i = 0; i < recordings.size(); ++i)
+      measurements[i] = step < recordings[i].measurements.size() ? &recordings[i].measurements[step] : nullptr;
+    trackers.step(measurements);
+    for (std::size_t i = 0; i < recordings.size(); ++i)
+      if (measurements[i] && runs[i].take(step, trackers.set(i)) && scored) scored(i, step);
+  }
+  std::vector<std::vector<RunScore>> scores;
+  for (std::size_t i = 0; i < recordings.size(); ++i) scores.push_back(runs[i].finish(trackers.set(i)));
   return scores;
 }
 

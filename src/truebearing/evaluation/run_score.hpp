@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -65,5 +66,11 @@ struct ScoringRule {
 std::vector<RunScore> score_recording(TrackerSet& trackers, const std::vector<Scorer>& scorers,
                                       const Recording& recording, const ScoringRule& rule,
                                       const std::function<void(std::size_t step)>& scored = {});
+
+/// The same of several recordings at once, each by a copy of the set: [recording][tracker]. At most as many as the pack
+/// has copies. scored: called with the recording and the step.
+std::vector<std::vector<RunScore>> score_recordings(
+    TrackerSetPack& trackers, const std::vector<Scorer>& scorers, std::span<const Recording> recordings,
+    const ScoringRule& rule, const std::function<void(std::size_t recording, std::size_t step)>& scored = {});
 
 }  // namespace truebearing

@@ -6,6 +6,15 @@
 #include "truebearing/core/error.hpp"
 
 namespace truebearing {
+namespace {
+
+std::vector<TrackerSet> copies_of(const TrackerSet& trackers, std::size_t copies) {
+  std::vector<TrackerSet> sets;
+  for (std::size_t i = 0; i < copies; ++i) sets.push_back(trackers.fresh());
+  return sets;
+}
+
+}  // namespace
 
 void TrackerSet::show_member(const std::string& name) {
   const int member = ensemble_.index(name);
@@ -26,6 +35,11 @@ const StateSpace& TrackerSet::space(int entry) const {
 
 void TrackerSet::step(const Measurement& measurement) {
   ensemble_.step(measurement);
+  correct();
+}
+
+// The ensemble's last step, and what the entries show of it.
+void TrackerSet::correct() {
   for (Entry& entry : entries_)
     entry.records = entry.correction < 0 ? ensemble_.records(entry.member)
                                          : corrections_[static_cast<std::size_t>(entry.correction)].correct(ensemble_);
@@ -63,6 +77,19 @@ TrackerSet TrackerSet::fresh() const {
   copy.entries_ = entries_;
   copy.reset();
   return copy;
+}
+
+TrackerSetPack::TrackerSetPack(const TrackerSet& trackers, std::size_t copies)
+    : sets_(copies_of(trackers, copies)), ensembles_([&] {
+        std::vector<Ensemble*> ensembles;
+        for (TrackerSet& set : sets_) ensembles.push_back(&set.ensemble_);
+        return ensembles;
+      }()) {}
+
+void TrackerSetPack::step(std::span<const Measurement* const> measurements) {
+  ensembles_.step(measurements);
+  for (std::size_t i = 0; i < sets_.size(); ++i)
+    if (measurements[i]) sets_[i].correct();
 }
 
 }  // namespace truebearing

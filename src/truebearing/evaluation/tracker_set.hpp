@@ -43,6 +43,9 @@ class TrackerSet {
   std::string assign(const TrackerSet& other);
 
  private:
+  friend class TrackerSetPack;
+
+  void correct();
   struct Entry {
     std::string name;
     int member;      // of the ensemble; the base's where this is a correction
@@ -54,6 +57,23 @@ class TrackerSet {
   Ensemble ensemble_;
   std::vector<Correction> corrections_;
   std::vector<Entry> entries_;
+};
+
+/// Copies of one set that are stepped together, each on a measurement of its own, as the runs of a comparison are: see
+/// EnsemblePack.
+class TrackerSetPack {
+ public:
+  /// copies: 1 to kPackLanes.
+  TrackerSetPack(const TrackerSet& trackers, std::size_t copies);
+
+  std::size_t size() const { return sets_.size(); }
+  TrackerSet& set(std::size_t i) { return sets_[i]; }
+  /// One for each copy, nullptr where it has none now.
+  void step(std::span<const Measurement* const> measurements);
+
+ private:
+  std::vector<TrackerSet> sets_;
+  EnsemblePack ensembles_;
 };
 
 }  // namespace truebearing

@@ -55,6 +55,11 @@ void InteractingMultipleModel::begin(const double* x, const double* P) {
   out_of_date();
 }
 
+void InteractingMultipleModel::believe(const ModeVector& mu) {
+  probabilities_ = predicted_ = mu;
+  out_of_date();
+}
+
 // Equations (11.6.6-7) to (-10).
 StepStatus InteractingMultipleModel::predict(double dt_s) {
   if (dt_s != chain_.period_s) over_dt_ = chain_.over(dt_s);

@@ -37,6 +37,11 @@ class InteractingMultipleModel final : public TrackedState {
   std::unique_ptr<TrackedState> fresh() const override;
   std::span<const std::unique_ptr<TrackedState>> modes() const override { return modes_->modes(); }
   ModeMatrix transition(double dt_s) const override { return chain_.over(dt_s); }
+  const MarkovChain& chain() const { return chain_; }
+
+  // To become what was worked out elsewhere (state_pack.hpp): every mode, then mu (r).
+  void begin_mode(int mode, const double* x, const double* P) { modes_->begin_mode(mode, x, P); }
+  void believe(const ModeVector& mu);
 
  private:
   InteractingMultipleModel(int size, std::unique_ptr<ModeBank> modes, const MarkovChain& chain);

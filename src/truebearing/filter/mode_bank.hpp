@@ -23,6 +23,8 @@ class ModeBank {
 
   /// Every mode begins with (x, P) of the longest state (n), by columns, or as much of it as its own has.
   virtual void begin(const double* x, const double* P, int n) = 0;
+  /// Mode j alone, with (x, P) of as many components as it has.
+  virtual void begin_mode(int mode, const double* x, const double* P) = 0;
   /// Mode j begins with the mixture of all by the weights in column j (r x r), then crosses dt_s seconds. False where
   /// one fails: all are as they were.
   virtual bool mix_and_predict(const ModeMatrix& weights, double dt_s) = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The mixtures of packed_modes_kernel.hpp.
-#include "truebearing/filter/packed_modes_kernel.hpp"
+#include "truebearing/filter/packed_mixtures_kernel.hpp"
+
 #include "truebearing/filter/packed_registers.hpp"
 
 namespace truebearing::kernels {
@@ -9,13 +9,13 @@ namespace {
 template <int N>
 struct Mixing {
   // Coefficient i of mode m stands i kBlock further: x, then P by rows.
-  [[gnu::always_inline]] static const double* of_mode(const ModeBlock<N>* modes, int m) {
+  [[gnu::always_inline]] static const double* of_mode(const FilterBlock<N>* modes, int m) {
     return modes[m / kBlock].x[0].lane + m % kBlock;
   }
 
   template <int kWidth>
-  [[gnu::always_inline]] static inline void mix_loops(const ModeBlock<N>* modes, int count, const OfModes* weights,
-                                                      ModeBlock<N>* mixed) {
+  [[gnu::always_inline]] static inline void mix_loops(const FilterBlock<N>* modes, int count, const OfFilters* weights,
+                                                      FilterBlock<N>* mixed) {
     using Some = Registers<kWidth>;
     using Doubles = typename Some::Doubles;
     if constexpr (kWidth > 4)
@@ -45,12 +45,12 @@ struct Mixing {
       Some::store(mean, P, first, mixed[first / kBlock]);
     }
   }
-  TRUEBEARING_FOR_WIDEST(mix, (const ModeBlock<N>* modes, int count, const OfModes* weights, ModeBlock<N>* mixed),
+  TRUEBEARING_FOR_WIDEST(mix, (const FilterBlock<N>* modes, int count, const OfFilters* weights, FilterBlock<N>* mixed),
                          (modes, count, weights, mixed))
 
   template <int kWidth>
-  [[gnu::always_inline]] static inline void to_one_loops(const ModeBlock<N>* modes, int count, const OfModes* weights,
-                                                         double* x, double* P) {
+  [[gnu::always_inline]] static inline void to_one_loops(const FilterBlock<N>* modes, int count,
+                                                         const OfFilters* weights, double* x, double* P) {
     using Some = Registers<kWidth>;
     using Doubles = typename Some::Doubles;
     if constexpr (kWidth > 4)
@@ -87,7 +87,8 @@ struct Mixing {
     for (int i = 0; i < N; ++i)
       for (int j = 0; j <= i; ++j) P[i + j * N] = P[j + i * N] = squares[i][j].sum();
   }
-  TRUEBEARING_FOR_WIDEST(to_one, (const ModeBlock<N>* modes, int count, const OfModes* weights, double* x, double* P),
+  TRUEBEARING_FOR_WIDEST(to_one,
+                         (const FilterBlock<N>* modes, int count, const OfFilters* weights, double* x, double* P),
                          (modes, count, weights, x, P))
 };
 
@@ -96,7 +97,7 @@ template <int N, int M>
 struct Combining {
   template <int kWidth>
   [[gnu::always_inline]] static inline void innovations_loops(const UpdateBlock<N>* updates, int count,
-                                                              const OfModes* weights, double* nu, double* S) {
+                                                              const OfFilters* weights, double* nu, double* S) {
     using Some = Registers<kWidth>;
     using Doubles = typename Some::Doubles;
     if constexpr (kWidth > 4)
@@ -135,12 +136,12 @@ struct Combining {
       for (int l = 0; l <= m; ++l) S[m + l * M] = S[l + m * M] = squares[m][l].sum();
   }
   TRUEBEARING_FOR_WIDEST(innovations,
-                         (const UpdateBlock<N>* updates, int count, const OfModes* weights, double* nu, double* S),
+                         (const UpdateBlock<N>* updates, int count, const OfFilters* weights, double* nu, double* S),
                          (updates, count, weights, nu, S))
 
   template <int kWidth>
   [[gnu::always_inline]] static inline void gains_loops(const UpdateBlock<N>* updates, int count,
-                                                        const OfModes* weights, double* K) {
+                                                        const OfFilters* weights, double* K) {
     using Some = Registers<kWidth>;
     using Doubles = typename Some::Doubles;
     if constexpr (kWidth > 4)
@@ -160,38 +161,38 @@ struct Combining {
     for (int i = 0; i < N; ++i)
       for (int m = 0; m < M; ++m) K[i + m * N] = totals[i][m].sum();
   }
-  TRUEBEARING_FOR_WIDEST(gains, (const UpdateBlock<N>* updates, int count, const OfModes* weights, double* K),
+  TRUEBEARING_FOR_WIDEST(gains, (const UpdateBlock<N>* updates, int count, const OfFilters* weights, double* K),
                          (updates, count, weights, K))
 };
 
 }  // namespace
 
 template <int N>
-void mix_modes(const ModeBlock<N>* modes, int count, const OfModes* weights, ModeBlock<N>* mixed) {
+void mix_modes(const FilterBlock<N>* modes, int count, const OfFilters* weights, FilterBlock<N>* mixed) {
   Mixing<N>().mix(modes, count, weights, mixed);
 }
 
 template <int N>
-void mix_to_one(const ModeBlock<N>* modes, int count, const OfModes* weights, double* x, double* P) {
+void mix_to_one(const FilterBlock<N>* modes, int count, const OfFilters* weights, double* x, double* P) {
   Mixing<N>().to_one(modes, count, weights, x, P);
 }
 
 template <int N, int M>
-void mix_innovations(const UpdateBlock<N>* updates, int count, const OfModes* weights, double* nu, double* S) {
+void mix_innovations(const UpdateBlock<N>* updates, int count, const OfFilters* weights, double* nu, double* S) {
   Combining<N, M>().innovations(updates, count, weights, nu, S);
 }
 
 template <int N, int M>
-void mix_gains(const UpdateBlock<N>* updates, int count, const OfModes* weights, double* K) {
+void mix_gains(const UpdateBlock<N>* updates, int count, const OfFilters* weights, double* K) {
   Combining<N, M>().gains(updates, count, weights, K);
 }
 
-#define TRUEBEARING_PACKED_INNOVATIONS(N, M)                                                         \
-  template void mix_innovations<N, M>(const UpdateBlock<N>*, int, const OfModes*, double*, double*); \
-  template void mix_gains<N, M>(const UpdateBlock<N>*, int, const OfModes*, double*)
-#define TRUEBEARING_PACKED_MIXTURES(N)                                                     \
-  template void mix_modes<N>(const ModeBlock<N>*, int, const OfModes*, ModeBlock<N>*);     \
-  template void mix_to_one<N>(const ModeBlock<N>*, int, const OfModes*, double*, double*); \
+#define TRUEBEARING_PACKED_INNOVATIONS(N, M)                                                           \
+  template void mix_innovations<N, M>(const UpdateBlock<N>*, int, const OfFilters*, double*, double*); \
+  template void mix_gains<N, M>(const UpdateBlock<N>*, int, const OfFilters*, double*)
+#define TRUEBEARING_PACKED_MIXTURES(N)                                                         \
+  template void mix_modes<N>(const FilterBlock<N>*, int, const OfFilters*, FilterBlock<N>*);   \
+  template void mix_to_one<N>(const FilterBlock<N>*, int, const OfFilters*, double*, double*); \
   TRUEBEARING_PACKED_INNOVATIONS(N, 1)
 TRUEBEARING_PACKED_MIXTURES(2);
 TRUEBEARING_PACKED_INNOVATIONS(2, 2);

@@ -10,16 +10,11 @@
 #include "truebearing/core/covariance.hpp"
 #include "truebearing/core/with_count.hpp"
 #include "truebearing/filter/filter_kinds.hpp"
-#include "truebearing/filter/packed_modes_kernel.hpp"
+#include "truebearing/filter/packed_mixtures_kernel.hpp"
 #include "truebearing/filter/separate_modes.hpp"
 
 namespace truebearing {
 namespace {
-
-// The longest states and measurements that the kernels are compiled for.
-constexpr int most_measurements(int states) {
-  return states == 2 ? 2 : states == 4 ? 3 : 4;
-}
 
 template <int N>
 class PackedModes final : public ModeBank {
@@ -51,15 +46,21 @@ class PackedModes final : public ModeBank {
     for (int lane = 0; lane < lanes(); ++lane) set(modes_, lane, filter.x(), filter.P());
   }
 
+  void begin_mode(int mode, const double* x, const double* P) override {
+    const KalmanFilter<N> filter(matrix_at<N, 1>(x), matrix_at<N, N>(P));
+    for (int lane = mode; lane < (mode + 1 < count() ? mode + 1 : lanes()); ++lane)
+      set(modes_, lane, filter.x(), filter.P());
+  }
+
   bool mix_and_predict(const ModeMatrix& weights, double dt_s) override {
     for (int to = 0; to < lanes(); ++to) {
       const double* of_all = weights.data() + mode_at(to) * weights.rows();
-      kernels::OfModes* in_block = weights_.data() + to / kernels::kBlock;
+      kernels::OfFilters* in_block = weights_.data() + to / kernels::kBlock;
       for (int from = 0; from < count(); ++from) in_block[from * blocks()][to % kernels::kBlock] = of_all[from];
     }
     kernels::mix_modes<N>(modes_.data(), count(), weights_.data(), next_.data());
     find_transitions(dt_s);
-    kernels::predict_modes<N>(transitions_.data(), count(), next_.data(), good_.data());
+    kernels::predict_filters<N>(transitions_.data(), count(), next_.data(), next_.data(), good_.data());
     for (const Moved& moved : nonlinear_) {
       if (!is_finite(moved.x)) block_of(good_, moved.lane).lane[moved.lane % kernels::kBlock] = 0;
       for (int i = 0; i < N; ++i) block_of(next_, moved.lane).x[i][moved.lane % kernels::kBlock] = moved.x[i];
@@ -72,7 +73,7 @@ class PackedModes final : public ModeBank {
 
   void update(const AnyMeasurement& measurement, ModeVector& log_likelihood) override {
     with_length(measurement, [&]<int M>(const SizedMeasurement<M>& sized) {
-      if constexpr (M <= most_measurements(N)) {
+      if constexpr (M <= kernels::most_measurements(N)) {
         take(sized, log_likelihood);
       } else {
         measured_ = M;
@@ -114,7 +115,7 @@ class PackedModes final : public ModeBank {
   }
 
  private:
-  using Blocks = std::vector<kernels::ModeBlock<N>>;
+  using Blocks = std::vector<kernels::FilterBlock<N>>;
   struct Estimate {
     State x;
     Matrix P;
@@ -139,8 +140,8 @@ class PackedModes final : public ModeBank {
   }
 
   // No weight for lanes that repeat a mode.
-  static std::array<kernels::OfModes, kernels::blocks_of(kMaxModes)> of_lanes(const ModeVector& weights) {
-    std::array<kernels::OfModes, kernels::blocks_of(kMaxModes)> of_lanes{};
+  static std::array<kernels::OfFilters, kernels::blocks_of(kMaxModes)> of_lanes(const ModeVector& weights) {
+    std::array<kernels::OfFilters, kernels::blocks_of(kMaxModes)> of_lanes{};
     for (int mode = 0; mode < weights.size(); ++mode)
       of_lanes[static_cast<std::size_t>(mode / kernels::kBlock)][mode % kernels::kBlock] = weights[mode];
     return of_lanes;
@@ -150,12 +151,12 @@ class PackedModes final : public ModeBank {
   template <typename Body>
   void with_measured(const Body& body) const {
     with_count(measured_, [&]<int M>(std::integral_constant<int, M> m) {
-      if constexpr (M > 0 && M <= most_measurements(N)) body(m);
+      if constexpr (M > 0 && M <= kernels::most_measurements(N)) body(m);
     });
   }
 
   static void set(Blocks& blocks, int lane, const State& x, const Matrix& P) {
-    kernels::ModeBlock<N>& block = block_of(blocks, lane);
+    kernels::FilterBlock<N>& block = block_of(blocks, lane);
     const int place = lane % kernels::kBlock;
     for (int i = 0; i < N; ++i) {
       block.x[i][place] = x[i];
@@ -164,7 +165,7 @@ class PackedModes final : public ModeBank {
   }
 
   static Estimate at(const Blocks& blocks, int lane) {
-    const kernels::ModeBlock<N>& block = block_of(blocks, lane);
+    const kernels::FilterBlock<N>& block = block_of(blocks, lane);
     const int place = lane % kernels::kBlock;
     Estimate estimate;
     for (int i = 0; i < N; ++i) {
@@ -208,13 +209,13 @@ class PackedModes final : public ModeBank {
   template <int M>
   void take(const SizedMeasurement<M>& measurement, ModeVector& log_likelihood) {
     measured_ = M;
+    tell_R(measurement);
     if (measurement.is_position()) {
-      kernels::update_modes<N, M, true>(measurement.z.data(), measurement.R.data(), count(), modes_.data(),
-                                        updates_.data(), next_.data(), good_.data());
+      tell_z(measurement);
+      kernels::update_filters<N, M, true>(count(), modes_.data(), updates_.data(), next_.data(), good_.data());
     } else {
       for (int lane = 0; lane < lanes(); ++lane) look(measurement, lane);
-      kernels::update_modes<N, M, false>(measurement.z.data(), measurement.R.data(), count(), modes_.data(),
-                                         updates_.data(), next_.data(), good_.data());
+      kernels::update_filters<N, M, false>(count(), modes_.data(), updates_.data(), next_.data(), good_.data());
     }
     const bool has_R = is_positive_semidefinite<M, double>(measurement.R);
     log_likelihood.resize(count());
@@ -248,6 +249,25 @@ class PackedModes final : public ModeBank {
     }
   }
 
+  // z and R to every lane. An R that they have been told stands.
+  template <int M>
+  void tell_z(const SizedMeasurement<M>& measurement) {
+    for (kernels::UpdateBlock<N>& update : updates_)
+      for (int m = 0; m < M; ++m)
+        for (double& z : update.nu[m].lane) z = measurement.z[m];
+  }
+  template <int M>
+  void tell_R(const SizedMeasurement<M>& measurement) {
+    const double* R = measurement.R.data();
+    if (told_ == M && std::equal(R, R + M * M, told_R_.begin())) return;
+    for (kernels::UpdateBlock<N>& update : updates_)
+      for (int m = 0; m < M; ++m)
+        for (int l = 0; l < M; ++l)
+          for (double& lane : update.R[m][l].lane) lane = measurement.R(m, l);
+    std::copy(R, R + M * M, told_R_.begin());
+    told_ = M;
+  }
+
   // The innovation of a lane and its H.
   template <int M>
   void look(const SizedMeasurement<M>& measurement, int lane) {
@@ -271,8 +291,10 @@ class PackedModes final : public ModeBank {
   bool all_linear_ = true;
   std::vector<Moved> nonlinear_;  // f(x) of the modes whose motion is
   std::vector<kernels::UpdateBlock<N>> updates_;
-  std::vector<kernels::ModeMask> good_;  // of next_
-  std::vector<kernels::OfModes> weights_;
+  std::vector<kernels::FilterMask> good_;  // of next_
+  std::vector<kernels::OfFilters> weights_;
+  int told_ = 0;  // m of the R that updates_ have
+  std::array<double, kMaxMeasurements * kMaxMeasurements> told_R_{};
   int measured_ = 1;  // m of the last update
   Modes shells_;      // the modes as filters of their own
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Modes that are Kalman filters of one length in the default form lie side by side, one in each lane of a register
-// (packed_modes_kernel.hpp): six of them cost less than two of SeparateModes. What a model has of its own, f and F of a
+// (packed_filters_kernel.hpp): six of them cost less than two of SeparateModes. What a model has of its own, f and F of a
 // nonlinear motion, h and H, is asked for mode by mode.
 #pragma once
 

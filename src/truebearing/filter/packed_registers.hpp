@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Modes of packed_modes_kernel.hpp as registers of its loops, and what is asked and summed of them.
+// Filters of packed_filters_kernel.hpp as registers of its loops, and what is asked and summed of them.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 #include "truebearing/core/simd_lanes.hpp"
 #include "truebearing/core/simd_width.hpp"
 #include "truebearing/filter/factorization.hpp"
-#include "truebearing/filter/packed_modes_kernel.hpp"
+#include "truebearing/filter/packed_filters_kernel.hpp"
 
 namespace truebearing::kernels {
 
@@ -16,21 +16,21 @@ using List = Item[static_cast<std::size_t>(Count)];
 template <typename Item, int Rows, int Cols>
 using Table = Item[static_cast<std::size_t>(Rows)][static_cast<std::size_t>(Cols)];
 
-// kWidth modes, from `first` on, as registers.
+// kWidth filters, from `first` on, as registers.
 template <int kWidth>
 struct Registers {
   using Vector = VectorOf<kWidth>;
   using Doubles = typename Vector::Doubles;
   using Bits = typename Vector::Bits;
 
-  [[gnu::always_inline]] static void load(const OfModes& from, int first, Doubles& to) {
+  [[gnu::always_inline]] static void load(const OfFilters& from, int first, Doubles& to) {
     Vector::load(from.lane + first % kBlock, to);
   }
-  [[gnu::always_inline]] static void store(const Doubles& from, int first, OfModes& to) {
+  [[gnu::always_inline]] static void store(const Doubles& from, int first, OfFilters& to) {
     Vector::store(from, to.lane + first % kBlock);
   }
   template <int N>
-  [[gnu::always_inline]] static void load(const ModeBlock<N>& from, int first, List<Doubles, N>& x,
+  [[gnu::always_inline]] static void load(const FilterBlock<N>& from, int first, List<Doubles, N>& x,
                                           Table<Doubles, N, N>& P) {
     for (int i = 0; i < N; ++i) {
       load(from.x[i], first, x[i]);
@@ -40,7 +40,7 @@ struct Registers {
   }
   template <int N>
   [[gnu::always_inline]] static void store(const List<Doubles, N>& x, const Table<Doubles, N, N>& P, int first,
-                                           ModeBlock<N>& to) {
+                                           FilterBlock<N>& to) {
     for (int i = 0; i < N; ++i) {
       store(x[i], first, to.x[i]);
       for (int j = 0; j < N; ++j) store(P[i > j ? i : j][i > j ? j : i], first, to.P[i][j]);
@@ -60,7 +60,7 @@ struct Registers {
       yes_ &= ~reinterpret_cast<Bits>(a - b);
     }
     [[gnu::always_inline]] void is_finite(const Doubles& a) { infinite_ |= reinterpret_cast<Bits>(a - a); }
-    [[gnu::always_inline]] void store(int first, ModeMask& mask) const {
+    [[gnu::always_inline]] void store(int first, FilterMask& mask) const {
       *reinterpret_cast<typename Vector::BitsInMemory*>(mask.lane + first % kBlock) =
           yes_ & ~(infinite_ | (Bits{} - infinite_));
     }
@@ -99,7 +99,7 @@ struct Registers {
 
   template <int N>
   [[gnu::always_inline]] static void judge(const List<Doubles, N>& x, const Table<Doubles, N, N>& P, int first,
-                                           ModeMask& good) {
+                                           FilterMask& good) {
     Table<Doubles, N, N> A;
     List<Doubles, N> least;
     Verdict verdict;
@@ -112,7 +112,7 @@ struct Registers {
     verdict.store(first, good);
   }
 
-  // Of all modes, in one order whatever the width: first those of a block that stand four apart.
+  // Of all filters, in one order whatever the width: first those of a block that stand four apart.
   struct Total {
     List<Doubles, kBlock / kWidth> parts;
 

@@ -18,6 +18,9 @@ class SeparateModes final : public ModeBank {
   explicit SeparateModes(Modes modes);
 
   void begin(const double* x, const double* P, int n) override;
+  void begin_mode(int mode, const double* x, const double* P) override {
+    modes_[static_cast<std::size_t>(mode)]->begin(x, P);
+  }
   bool mix_and_predict(const ModeMatrix& weights, double dt_s) override;
   void update(const AnyMeasurement& measurement, ModeVector& log_likelihood) override;
   void keep() override;

@@ -54,4 +54,23 @@ const StepRecord* Ensemble::record(int member, int track) const {
   return found == all.end() ? nullptr : &*found;
 }
 
+EnsemblePack::EnsemblePack(std::vector<Ensemble*> ensembles)
+    : ensembles_(std::move(ensembles)), lanes_(ensembles_.size()) {
+  for (const Ensemble::Member& member : ensembles_.front()->members_)
+    packs_.push_back(ensembles_.size() > 1 ? member.tracker->pack() : nullptr);
+}
+
+void EnsemblePack::step(std::span<const Measurement* const> measurements) {
+  for (std::size_t member = 0; member < packs_.size(); ++member) {
+    for (std::size_t i = 0; i < lanes_.size(); ++i) {
+      Tracker& tracker = *ensembles_[i]->members_[member].tracker;
+      lanes_[i] = {&tracker, measurements[i]};
+      if (!packs_[member] && measurements[i]) lanes_[i].records = tracker.step(*measurements[i]);
+    }
+    if (packs_[member]) packs_[member]->step(lanes_);
+    for (std::size_t i = 0; i < lanes_.size(); ++i)
+      if (measurements[i]) ensembles_[i]->members_[member].records = lanes_[i].records;
+  }
+}
+
 }  // namespace truebearing

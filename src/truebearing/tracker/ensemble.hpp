@@ -42,6 +42,8 @@ class Ensemble {
   const StepRecord* record(int member, int track) const;
 
  private:
+  friend class EnsemblePack;
+
   struct Member {
     std::string name;
     std::unique_ptr<Tracker> tracker;
@@ -50,6 +52,22 @@ class Ensemble {
   const Member& at(int member) const { return members_[static_cast<std::size_t>(member)]; }
 
   std::vector<Member> members_;
+};
+
+/// Ensembles that are stepped together, each on a measurement of its own: a member's trackers in all of them side by side
+/// (tracker_pack.hpp), where that is of use.
+class EnsemblePack {
+ public:
+  /// `ensembles` (1 to kPackLanes) were made by fresh() from one, and stay where they are.
+  explicit EnsemblePack(std::vector<Ensemble*> ensembles);
+
+  /// One for each ensemble, nullptr where it has none now.
+  void step(std::span<const Measurement* const> measurements);
+
+ private:
+  std::vector<Ensemble*> ensembles_;
+  std::vector<std::unique_ptr<TrackerPack>> packs_;  // [member]; nullptr where they are stepped one by one
+  std::vector<TrackerPack::Lane> lanes_;
 };
 
 }  // namespace truebearing

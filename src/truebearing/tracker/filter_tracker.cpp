@@ -78,31 +78,37 @@ void FilterTracker::check() const {
 }
 
 std::span<const StepRecord> FilterTracker::step(const Measurement& measurement) {
+  const auto records = open(measurement);
+  return records ? *records : go_on(measurement);
+}
+
+// What comes before the filter. The records, where the step ends with that.
+std::optional<std::span<const StepRecord>> FilterTracker::open(const Measurement& measurement) {
   passage_ = {};
   const StreamGuard::Verdict verdict = guard_.examine(measurement, sensor_->has_value(measurement));
-  const bool usable = verdict == StreamGuard::Verdict::usable;
+  usable_ = verdict == StreamGuard::Verdict::usable;
   if (verdict == StreamGuard::Verdict::repeated || verdict == StreamGuard::Verdict::out_of_order) return refuse();
   if (measurement.guess) guess_ = measurement.guess;
 
-  if (usable && begun_ && (lost_ || measurement.time_s - used_time_s_ > options_.lost_after_s))
+  if (usable_ && begun_ && (lost_ || measurement.time_s - used_time_s_ > options_.lost_after_s))
     restart(measurement.time_s);
-  if (!begun_) return usable ? start_from(measurement) : std::span<const StepRecord>();
+  if (!begun_) return usable_ ? start_from(measurement) : std::span<const StepRecord>();
+  return std::nullopt;
+}
 
-  clear_blocks();
-  record_.time_s = measurement.time_s;
-  record_.sensor = measurement.sensor;
-  record_.source = measurement.source;
-
+std::span<const StepRecord> FilterTracker::go_on(const Measurement& measurement) {
+  come_home();
+  begin_record(measurement);
   // The filter stays at its last used measurement: a missing one leaves no trace in what follows, to the bit.
   kept_->assign(*state_);
   if (!predict(measurement.time_s - used_time_s_)) {  // so long ago that nothing is known any more
-    if (!usable) return give_up();
+    if (!usable_) return give_up();
     restart(measurement.time_s);
     if (!begun_) return start_from(measurement);
     kept_->assign(*state_);
     predict(0.0);
   }
-  if (record_.status == StepStatus::ok) record_.status = usable ? update(measurement) : StepStatus::coasted;
+  if (record_.status == StepStatus::ok) record_.status = usable_ ? update(measurement) : StepStatus::coasted;
   const bool used = record_.status == StepStatus::ok;  // whether or not what is ahead can be told
   if (!publish()) {
     lost_ = true;
@@ -114,6 +120,13 @@ std::span<const StepRecord> FilterTracker::step(const Measurement& measurement) 
   else
     state_.swap(kept_);
   return {&record_, 1};
+}
+
+void FilterTracker::begin_record(const Measurement& measurement) {
+  clear_blocks();
+  record_.time_s = measurement.time_s;
+  record_.sensor = measurement.sensor;
+  record_.source = measurement.source;
 }
 
 void FilterTracker::reset() {
@@ -143,7 +156,8 @@ bool FilterTracker::assign(const Tracker& tracker) {
   guard_ = other->guard_;
   gates_ = other->gates_;
   begun_ = other->begun_;
-  state_->assign(*other->state_);
+  state_->assign(other->state());
+  is_in_pack_ = false;
   used_time_s_ = other->used_time_s_;
   passage_ = other->passage_;
   lost_ = other->lost_;
@@ -168,6 +182,7 @@ RecordBlocks FilterTracker::blocks() const {
 
 void FilterTracker::begin(const PriorStart& start) {
   state_->begin(start.x.data(), start.P.data());
+  is_in_pack_ = false;
   begun_ = true;
 }
 
@@ -175,7 +190,7 @@ void FilterTracker::restart(double time_s) {
   ++record_.track;
   passage_.begins = true;
   forget();
-  begun_ = false;
+  begun_ = is_in_pack_ = false;
   if (const auto* prior = std::get_if<PriorStart>(&start_)) begin(*prior);
   used_time_s_ = time_s;
 }
@@ -204,7 +219,7 @@ StepStatus FilterTracker::cross(double dt_s, TrackedState& state) const {
 bool FilterTracker::predict(double dt_s) {
   record_.status = cross(dt_s, *state_);
   Prediction& prediction = record_.prediction.emplace(Unfilled());
-  const bool sensible = copy_published(*state_, prediction.x, prediction.P);
+  const bool sensible = copy_published(state_->x_data(), state_->P_data(), prediction.x, prediction.P);
   // A failed prediction leaves the filter where it was, which is not where it would be by now.
   if (record_.status == StepStatus::failed) {
     ++guard_.counts.failed;
@@ -336,11 +351,12 @@ void FilterTracker::pull(const SizedMeasurement<M>& measurement) {
 // False where the state is no track; what it is stands in the record all the same. Where it cannot be carried so far
 // ahead, the record says `failed`, and the filter goes on.
 bool FilterTracker::publish() {
-  const bool sensible = copy_published(*state_, record_.x, record_.P);
+  const bool sensible = copy_published(state_->x_data(), state_->P_data(), record_.x, record_.P);
   if (ahead_) {
     ahead_->assign(*state_);
     const bool crossed = ahead_->predict(options_.ahead_s) == StepStatus::ok;
-    if (!copy_published(*ahead_, record_.x, record_.P) || !crossed) record_.status = StepStatus::failed;
+    if (!copy_published(ahead_->x_data(), ahead_->P_data(), record_.x, record_.P) || !crossed)
+      record_.status = StepStatus::failed;
   }
   if (options_.output_pull > 0.0 && record_.gain) {
     record_.x.head(moved_.size()) += moved_;
@@ -351,13 +367,13 @@ bool FilterTracker::publish() {
 }
 
 // Without the components that the space does not have. False where the state is no track (is_sensible()).
-bool FilterTracker::copy_published(const TrackedState& state, BoundedVector& x, BoundedMatrix& P) const {
+bool FilterTracker::copy_published(const double* from_x, const double* from_P, BoundedVector& x,
+                                   BoundedMatrix& P) const {
   const int n = space_->size();
-  const double *from_x = state.x_data(), *from_P = state.P_data();
   bool sensible = true;
   x.resize(n);
   P.resize(n, n);
-  with_count(state.size(), [&]<int N>(std::integral_constant<int, N>) {
+  with_count(state_->size(), [&]<int N>(std::integral_constant<int, N>) {
     using Vector = Eigen::Matrix<double, N, 1>;
     using Matrix = Eigen::Matrix<double, N, N>;
     sensible = is_sensible<N>(from_x, from_P, n / 2);

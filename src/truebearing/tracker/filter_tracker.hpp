@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "truebearing/filter/state_pack.hpp"
 #include "truebearing/filter/tracked_state.hpp"
 #include "truebearing/tracker/any_sensor.hpp"
 #include "truebearing/tracker/gate.hpp"
@@ -56,6 +57,7 @@ class FilterTracker : public Successor {
   bool is_lost() const override { return lost_ || !begun_; }
   std::unique_ptr<Tracker> fresh() const override;
   bool assign(const Tracker& other) override;
+  std::unique_ptr<TrackerPack> pack() const override;
 
   const StateSpace& space() const override { return *space_; }
   std::optional<Measured> measures() const override { return sensor_->measured(); }
@@ -63,17 +65,25 @@ class FilterTracker : public Successor {
   TrackerCounts counts() const override { return guard_.counts; }
 
   /// At the last used measurement, or as the track began; means nothing where is_lost().
-  const TrackedState& state() const { return *state_; }
+  const TrackedState& state() const {
+    come_home();
+    return *state_;
+  }
   double used_time_s() const { return used_time_s_; }
   const Passage& passage() const { return passage_; }
   const FilterTrackerOptions& options() const { return options_; }
 
  private:
+  friend class FilterTrackerPack;
+
   void check() const;
   void begin(const PriorStart& start);
   void restart(double time_s);
   void forget();
   void forget_challenger();
+  std::optional<std::span<const StepRecord>> open(const Measurement& measurement);
+  std::span<const StepRecord> go_on(const Measurement& measurement);
+  void begin_record(const Measurement& measurement);
   std::span<const StepRecord> start_from(const Measurement& measurement);
   std::optional<PriorStart> start_at(const std::optional<Measurement>& waiting, const Measurement& measurement);
   void add_motion(double dt_s, PriorStart& start);
@@ -88,7 +98,14 @@ class FilterTracker : public Successor {
   void pull(const SizedMeasurement<M>& measurement);
   bool publish();
   void clear_blocks();
-  bool copy_published(const TrackedState& state, BoundedVector& x, BoundedMatrix& P) const;
+  bool copy_published(const double* from_x, const double* from_P, BoundedVector& x, BoundedMatrix& P) const;
+
+  // Of a step in a pack (filter_tracker_pack.cpp).
+  bool is_ordinary(const Measurement& measurement) const;
+  bool show_prediction(const StatePack& pack, int lane);
+  bool settle(const StatePack& pack, int lane, const Measurement& measurement, const AnyMeasurement& taken);
+  bool show(const StatePack& pack, int lane, BoundedVector& x, BoundedMatrix& P) const;
+  void come_home() const;
 
   const StateSpace* space_;
   std::unique_ptr<AnySensor> sensor_;
@@ -102,6 +119,11 @@ class FilterTracker : public Successor {
   std::unique_ptr<TrackedState> state_;
   std::unique_ptr<TrackedState> kept_;
   std::unique_ptr<TrackedState> ahead_;  // of state_ after ahead_s, for publishing
+  // Where the state is held in state_'s place, while several trackers are stepped together.
+  std::shared_ptr<StatePack> pack_;
+  int lane_ = 0;
+  mutable bool is_in_pack_ = false;
+  bool usable_ = false;  // the measurement of this step
   double used_time_s_ = 0.0;
   Passage passage_;
   bool lost_ = false;      // the next usable measurement begins a new track

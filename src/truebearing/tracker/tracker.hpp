@@ -11,6 +11,7 @@
 #include "truebearing/measurement/measured.hpp"
 #include "truebearing/measurement/measurement.hpp"
 #include "truebearing/tracker/step_record.hpp"
+#include "truebearing/tracker/tracker_pack.hpp"
 
 namespace truebearing {
 
@@ -93,6 +94,10 @@ class Tracker {
 
   /// An independent tracker in the state after construction.
   virtual std::unique_ptr<Tracker> fresh() const = 0;
+
+  /// What steps several trackers made by fresh() from this one or from the same together (tracker_pack.hpp); nothing
+  /// where that costs no less than one after another.
+  virtual std::unique_ptr<TrackerPack> pack() const { return nullptr; }
 
   /// The space of the records' states.
   virtual const StateSpace& space() const = 0;

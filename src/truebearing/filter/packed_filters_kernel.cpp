@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "truebearing/filter/packed_modes_kernel.hpp"
+#include "truebearing/filter/packed_filters_kernel.hpp"
 
 #include <limits>
 
@@ -16,16 +16,17 @@ template <int N>
 struct Predicting {
   template <int kWidth>
   [[gnu::always_inline]] static inline void predict_loops(const TransitionBlock<N>* transitions, int count,
-                                                          ModeBlock<N>* modes, ModeMask* good) {
+                                                          const FilterBlock<N>* filters, FilterBlock<N>* moved_filters,
+                                                          FilterMask* good) {
     using Some = Registers<kWidth>;
     using Doubles = typename Some::Doubles;
     if constexpr (kWidth > 4)
-      if (count <= 4) return predict_loops<4>(transitions, count, modes, good);
+      if (count <= 4) return predict_loops<4>(transitions, count, filters, moved_filters, good);
     for (int first = 0; first < count; first += kWidth) {
       const TransitionBlock<N>& transition = transitions[first / kBlock];
       List<Doubles, N> x, moved;
       Table<Doubles, N, N> P, F, FP;
-      Some::load(modes[first / kBlock], first, x, P);
+      Some::load(filters[first / kBlock], first, x, P);
       for (int i = 0; i < N; ++i)
         for (int k = 0; k < N; ++k) Some::load(transition.F[i][k], first, F[i][k]);
       for (int i = 0; i < N; ++i) {
@@ -42,13 +43,14 @@ struct Predicting {
           Some::load(transition.Q[i][j], first, P[i][j]);
           for (int k = 0; k < N; ++k) P[i][j] += FP[i][k] * F[j][k];
         }
-      Some::store(moved, P, first, modes[first / kBlock]);
+      Some::store(moved, P, first, moved_filters[first / kBlock]);
       Some::template judge<N>(moved, P, first, good[first / kBlock]);
     }
   }
   TRUEBEARING_FOR_WIDEST(predict,
-                         (const TransitionBlock<N>* transitions, int count, ModeBlock<N>* modes, ModeMask* good),
-                         (transitions, count, modes, good))
+                         (const TransitionBlock<N>* transitions, int count, const FilterBlock<N>* filters,
+                          FilterBlock<N>* moved, FilterMask* good),
+                         (transitions, count, filters, moved, good))
 };
 
 template <int N, int M, bool kPosition>
@@ -72,7 +74,7 @@ struct Taking {
   template <int kWidth>
   [[gnu::always_inline]] static inline void gain(const Table<typename Registers<kWidth>::Doubles, N, N>& P,
                                                  const Table<typename Registers<kWidth>::Doubles, M, N>& H,
-                                                 const double* R,
+                                                 const Table<typename Registers<kWidth>::Doubles, M, M>& R,
                                                  const Table<typename Registers<kWidth>::Doubles, N, M>& PHt,
                                                  const List<typename Registers<kWidth>::Doubles, M>& nu, int first,
                                                  UpdateBlock<N>& update,
@@ -86,7 +88,7 @@ struct Taking {
     typename Some::Verdict verdict;
     for (int m = 0; m < M; ++m)
       for (int l = 0; l <= m; ++l) {
-        L[m][l] = Doubles{} + R[m + l * M];
+        L[m][l] = R[m][l];
         if constexpr (kPosition)
           L[m][l] += PHt[m][l];
         else
@@ -95,7 +97,7 @@ struct Taking {
         if (l < m) Some::store(L[m][l], first, update.S[l][m]);
       }
     for (int k = 0; k < M; ++k) {
-      Doubles t = Doubles{} + R[k + k * M];
+      Doubles t = R[k][k];
       if constexpr (kPosition)
         t += P[k][k];
       else
@@ -125,6 +127,7 @@ struct Taking {
         for (int i = 1; i < M; ++i) nis += nu[i] * b[i];
       }
     }
+    Some::store(nis, first, update.nis);
     verdict.is_not_less(determinant, Doubles{} + std::numeric_limits<double>::min());
     verdict.is_finite(determinant);
     logarithm<kWidth>(determinant);
@@ -136,27 +139,29 @@ struct Taking {
 
   // Joseph::update(), and x = x + K nu.
   template <int kWidth>
-  [[gnu::always_inline]] static inline void take_loops(const double* z, const double* R, int count,
-                                                       const ModeBlock<N>* modes, UpdateBlock<N>* updates,
-                                                       ModeBlock<N>* updated, ModeMask* good) {
+  [[gnu::always_inline]] static inline void take_loops(int count, const FilterBlock<N>* filters,
+                                                       UpdateBlock<N>* updates, FilterBlock<N>* updated,
+                                                       FilterMask* good) {
     using Some = Registers<kWidth>;
     using Doubles = typename Some::Doubles;
     if constexpr (kWidth > 4)
-      if (count <= 4) return take_loops<4>(z, R, count, modes, updates, updated, good);
+      if (count <= 4) return take_loops<4>(count, filters, updates, updated, good);
     for (int first = 0; first < count; first += kWidth) {
       UpdateBlock<N>& update = updates[first / kBlock];
       List<Doubles, N> x;
       Table<Doubles, N, N> P;
       List<Doubles, M> nu;
+      Table<Doubles, M, M> R;
       Table<Doubles, M, N> H;
       Table<Doubles, N, M> PHt, K;
-      Some::load(modes[first / kBlock], first, x, P);
+      Some::load(filters[first / kBlock], first, x, P);
       for (int m = 0; m < M; ++m) {
+        Some::load(update.nu[m], first, nu[m]);
+        for (int l = 0; l < M; ++l) Some::load(update.R[m][l], first, R[m][l]);
         if constexpr (kPosition) {
-          nu[m] = z[m] - x[m];
+          nu[m] -= x[m];
           Some::store(nu[m], first, update.nu[m]);
         } else {
-          Some::load(update.nu[m], first, nu[m]);
           for (int i = 0; i < N; ++i) Some::load(update.H[m][i], first, H[m][i]);
         }
       }
@@ -170,7 +175,7 @@ struct Taking {
       times_H<Doubles>(P, H, PHt);
       for (int i = 0; i < N; ++i)
         for (int m = 0; m < M; ++m)
-          for (int l = 0; l < M; ++l) PHt[i][m] -= K[i][l] * R[l + m * M];
+          for (int l = 0; l < M; ++l) PHt[i][m] -= K[i][l] * R[l][m];
       for (int i = 0; i < N; ++i)
         for (int j = 0; j <= i; ++j)
           for (int m = 0; m < M; ++m) P[i][j] -= PHt[i][m] * K[j][m];
@@ -179,38 +184,38 @@ struct Taking {
     }
   }
   TRUEBEARING_FOR_WIDEST(take,
-                         (const double* z, const double* R, int count, const ModeBlock<N>* modes,
-                          UpdateBlock<N>* updates, ModeBlock<N>* updated, ModeMask* good),
-                         (z, R, count, modes, updates, updated, good))
+                         (int count, const FilterBlock<N>* filters, UpdateBlock<N>* updates, FilterBlock<N>* updated,
+                          FilterMask* good),
+                         (count, filters, updates, updated, good))
 };
 
 }  // namespace
 
 template <int N>
-void predict_modes(const TransitionBlock<N>* transitions, int count, ModeBlock<N>* modes, ModeMask* good) {
-  Predicting<N>().predict(transitions, count, modes, good);
+void predict_filters(const TransitionBlock<N>* transitions, int count, const FilterBlock<N>* filters,
+                     FilterBlock<N>* moved, FilterMask* good) {
+  Predicting<N>().predict(transitions, count, filters, moved, good);
 }
 
 template <int N, int M, bool kPosition>
-void update_modes(const double* z, const double* R, int count, const ModeBlock<N>* modes, UpdateBlock<N>* updates,
-                  ModeBlock<N>* updated, ModeMask* good) {
-  Taking<N, M, kPosition>().take(z, R, count, modes, updates, updated, good);
+void update_filters(int count, const FilterBlock<N>* filters, UpdateBlock<N>* updates, FilterBlock<N>* updated,
+                    FilterMask* good) {
+  Taking<N, M, kPosition>().take(count, filters, updates, updated, good);
 }
 
-#define TRUEBEARING_PACKED_UPDATE(N, M)                                                                            \
-  template void update_modes<N, M, true>(const double*, const double*, int, const ModeBlock<N>*, UpdateBlock<N>*,  \
-                                         ModeBlock<N>*, ModeMask*);                                                \
-  template void update_modes<N, M, false>(const double*, const double*, int, const ModeBlock<N>*, UpdateBlock<N>*, \
-                                          ModeBlock<N>*, ModeMask*)
-#define TRUEBEARING_PACKED_MODES(N)                                                         \
-  template void predict_modes<N>(const TransitionBlock<N>*, int, ModeBlock<N>*, ModeMask*); \
+#define TRUEBEARING_PACKED_UPDATE(N, M)                                                                                \
+  template void update_filters<N, M, true>(int, const FilterBlock<N>*, UpdateBlock<N>*, FilterBlock<N>*, FilterMask*); \
+  template void update_filters<N, M, false>(int, const FilterBlock<N>*, UpdateBlock<N>*, FilterBlock<N>*, FilterMask*)
+#define TRUEBEARING_PACKED_FILTERS(N)                                                                      \
+  template void predict_filters<N>(const TransitionBlock<N>*, int, const FilterBlock<N>*, FilterBlock<N>*, \
+                                   FilterMask*);                                                           \
   TRUEBEARING_PACKED_UPDATE(N, 1)
-TRUEBEARING_PACKED_MODES(2);
+TRUEBEARING_PACKED_FILTERS(2);
 TRUEBEARING_PACKED_UPDATE(2, 2);
-TRUEBEARING_PACKED_MODES(4);
+TRUEBEARING_PACKED_FILTERS(4);
 TRUEBEARING_PACKED_UPDATE(4, 2);
 TRUEBEARING_PACKED_UPDATE(4, 3);
-TRUEBEARING_PACKED_MODES(6);
+TRUEBEARING_PACKED_FILTERS(6);
 TRUEBEARING_PACKED_UPDATE(6, 2);
 TRUEBEARING_PACKED_UPDATE(6, 3);
 TRUEBEARING_PACKED_UPDATE(6, 4);

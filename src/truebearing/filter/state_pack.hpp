@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// StatePack: the estimates of several targets, or of one target in several Monte Carlo runs, side by side, each in a lane
+// of a register, where one filter or multiple model (tracked_state.hpp) of a kind follows all of them. A lane comes to
+// what its own state would, to the last bit. What is out of the ordinary in a lane is left to its own state: the pack
+// says of which lanes it is certain.
+#pragma once
+
+#include <memory>
+
+#include "truebearing/filter/any_measurement.hpp"
+#include "truebearing/filter/lane_mask.hpp"
+#include "truebearing/filter/tracked_state.hpp"
+
+namespace truebearing {
+
+class StatePack {
+ public:
+  virtual ~StatePack() = default;
+
+  /// The lane holds what `state` does, which was made by fresh() from the one that the pack is of, or is that.
+  virtual void enter(int lane, const TrackedState& state) = 0;
+  /// `state` becomes what the lane holds, without what was done since the last keep().
+  virtual void leave(int lane, TrackedState& state) = 0;
+
+  /// What those lanes are dt_s[lane] > 0 later. Gives those of which it is certain; nothing is said of another.
+  virtual LaneMask predict(LaneMask lanes, const double* dt_s) = 0;
+  /// What they are, so predicted, with a measurement each. Likewise.
+  virtual LaneMask update(LaneMask lanes, const AnyMeasurement* const* measurements) = 0;
+  /// That is what those lanes hold from now on; others hold what they held.
+  virtual void keep(LaneMask lanes) = 0;
+
+  // Of what is held, predicted or updated, whichever came last; of lanes of which that was certain.
+  /// x (n), P (n x n, by columns).
+  virtual void estimate(int lane, double* x, double* P) const = 0;
+  /// What TrackedState::update() leaves behind.
+  virtual void update_of(int lane, const StateUpdateTarget& update) const = 0;
+  /// mu (r) of a multiple model; empty otherwise.
+  virtual void mode_probabilities(int lane, ModeVector& mu) const = 0;
+
+ protected:
+  StatePack() = default;
+  StatePack(const StatePack&) = delete;
+  StatePack& operator=(const StatePack&) = delete;
+};
+
+/// A pack for states as that one is: Kalman filters in Joseph's form of 2, 4 or 6 states, extended ones too, and multiple
+/// models of them. Nothing for others, and on processors whose registers are too short for it to be of use.
+std::unique_ptr<StatePack> pack_of(const TrackedState& state);
+
+}  // namespace truebearing

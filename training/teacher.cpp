@@ -7,6 +7,7 @@
 #include <cstring>
 #include <fmt/format.h>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -47,7 +48,7 @@ void append(const auto& values, Rows& rows) {
   for (Eigen::Index i = 0; i < values.size(); ++i) rows.push_back(values.reshaped()[i]);
 }
 
-// What one worker needs to make the rows of a run.
+// What makes the rows of a run.
 class RowMaker {
  public:
   RowMaker(const Ensemble& ensemble, const CorrectionSpec& correction, const StateSpace& truth_space,
@@ -64,22 +65,31 @@ class RowMaker {
       limits_.emplace_back(quantity(name), threshold);
   }
 
-  Rows rows(const Recording& recording, const RunKey& key) {
-    if (teacher_ >= 0) return rows_by_smoother(recording, key);
-    std::vector<Rows> parts(whole_tracks_ ? recording.truth.size() : 1);
+  Ensemble& ensemble() { return ensemble_; }
+
+  /// A run, whose steps the ensemble then takes one by one. The recording must outlive it.
+  void begin(const Recording& recording, const RunKey& key) {
+    recording_ = &recording;
+    random_.emplace(key, StreamId::learning);
     ensemble_.reset();
     ensemble_.foresee(recording.measurements);
-    tracks_.assign(recording.truth.size(), {inputs_.extractor()});
-    for (std::size_t step = 0; step < recording.measurements.size(); ++step) {
-      ensemble_.step(recording.measurements[step]);
-      for (std::size_t target = 0; target < tracks_.size(); ++target)
-        if (const StepRecord* base = target_record(recording, target, ensemble_.records(inputs_.base())))
-          take(*base, lesson_of(recording.truth[target].x[step]), static_cast<int>(step) + 1 >= from_step_,
-               tracks_[target], parts[whole_tracks_ ? target : 0]);
-    }
-    for (std::size_t target = 1; target < parts.size(); ++target)
-      parts[0].insert(parts[0].end(), parts[target].begin(), parts[target].end());
-    return std::move(parts[0]);
+    const std::size_t targets = teacher_ >= 0 ? 1 : recording.truth.size();
+    tracks_.assign(targets, {inputs_.extractor()});
+    parts_.assign(whole_tracks_ ? targets : 1, {});
+  }
+
+  /// After the ensemble's step of that number.
+  void take(std::size_t step) {
+    if (teacher_ >= 0)
+      take_by_smoother(step);
+    else
+      take_by_truth(step);
+  }
+
+  Rows end() {
+    for (std::size_t part = 1; part < parts_.size(); ++part)
+      parts_[0].insert(parts_[0].end(), parts_[part].begin(), parts_[part].end());
+    return std::move(parts_[0]);
   }
 
  private:
@@ -101,30 +111,28 @@ class RowMaker {
     return {true_state, true_state(truth_index_), BoundedVector::Zero(static_cast<Eigen::Index>(truth_index_.size()))};
   }
 
-  Rows rows_by_smoother(const Recording& recording, const RunKey& key) {
+  void take_by_truth(std::size_t step) {
+    for (std::size_t target = 0; target < tracks_.size(); ++target)
+      if (const StepRecord* base = target_record(*recording_, target, ensemble_.records(inputs_.base())))
+        take(*base, lesson_of(recording_->truth[target].x[step]), static_cast<int>(step) + 1 >= from_step_,
+             tracks_[target], parts_[whole_tracks_ ? target : 0]);
+  }
+
+  void take_by_smoother(std::size_t step) {
     const auto& smoother = dynamic_cast<const Smoother&>(ensemble_.tracker(teacher_));
-    RandomStream random(key, StreamId::learning);
-    Rows rows;
-    ensemble_.reset();
-    ensemble_.foresee(recording.measurements);
-    tracks_.assign(1, {inputs_.extractor()});
-    for (std::size_t step = 0; step < recording.measurements.size(); ++step) {
-      ensemble_.step(recording.measurements[step]);
-      const auto bases = ensemble_.records(inputs_.base()), smoothed = ensemble_.records(teacher_);
-      if (bases.empty()) continue;
-      const StepRecord* known = smoothed.empty() ? nullptr : &smoothed.front();
-      const bool is_taught = random.uniform() < (known ? weight(*known, *smoother.account()) : 0.0) &&
-                             known->time_s == bases.front().time_s && static_cast<int>(step) + 1 >= from_step_;
-      Lesson lesson = lesson_of(known ? known->x : BoundedVector::Zero(smoother.space().size()));
-      if (is_taught) {
-        const BoundedMatrix P = known->P(truth_index_, truth_index_);
-        BoundedVector unit(P.rows());
-        for (double& value : unit) value = random.normal();
-        lesson.unsure = Eigen::LLT<BoundedMatrix>(P).matrixL() * unit;
-      }
-      take(bases.front(), lesson, is_taught, tracks_.front(), rows);
+    const auto bases = ensemble_.records(inputs_.base()), smoothed = ensemble_.records(teacher_);
+    if (bases.empty()) return;
+    const StepRecord* known = smoothed.empty() ? nullptr : &smoothed.front();
+    const bool is_taught = random_->uniform() < (known ? weight(*known, *smoother.account()) : 0.0) &&
+                           known->time_s == bases.front().time_s && static_cast<int>(step) + 1 >= from_step_;
+    Lesson lesson = lesson_of(known ? known->x : BoundedVector::Zero(smoother.space().size()));
+    if (is_taught) {
+      const BoundedMatrix P = known->P(truth_index_, truth_index_);
+      BoundedVector unit(P.rows());
+      for (double& value : unit) value = random_->normal();
+      lesson.unsure = Eigen::LLT<BoundedMatrix>(P).matrixL() * unit;
     }
-    return rows;
+    take(bases.front(), lesson, is_taught, tracks_.front(), parts_.front());
   }
 
   // How much more the smoother knows than its filter, in [0, 1].
@@ -190,7 +198,61 @@ class RowMaker {
   CorrectionInputs inputs_;
   Scorer scorer_;                                       // of the base
   std::vector<std::pair<std::size_t, double>> limits_;  // of its errors, by quantity
-  std::vector<Track> tracks_;                           // [target]
+  // Of the run.
+  const Recording* recording_ = nullptr;
+  std::optional<RandomStream> random_;
+  std::vector<Track> tracks_;  // [target]
+  std::vector<Rows> parts_;    // of each target, where tracks are whole
+};
+
+// Makes the rows of several runs together (EnsemblePack).
+class RowMakers {
+ public:
+  template <typename Make>
+  RowMakers(std::size_t count, const Make& make) : makers_(made(count, make)), ensembles_(ensembles_of(makers_)) {}
+
+  // One run after another.
+  Rows rows(const Scenario& scenario, const std::vector<RunKey>& keys) {
+    std::vector<Recording> recordings;
+    for (const RunKey& key : keys) recordings.push_back(scenario.simulate(key));
+    std::size_t steps = 0;
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      makers_[i]->begin(recordings[i], keys[i]);
+      steps = std::max(steps, recordings[i].measurements.size());
+    }
+    std::vector<const Measurement*> measurements(makers_.size());
+    for (std::size_t step = 0; step < steps; ++step) {
+      for (std::size_t i = 0; i < keys.size(); ++i)
+        measurements[i] = step < recordings[i].measurements.size() ? &recordings[i].measurements[step] : nullptr;
+      ensembles_.step(measurements);
+      for (std::size_t i = 0; i < keys.size(); ++i)
+        if (measurements[i]) makers_[i]->take(step);
+    }
+    Rows all;
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      const Rows of_run = makers_[i]->end();
+      all.insert(all.end(), of_run.begin(), of_run.end());
+    }
+    return all;
+  }
+
+ private:
+  using Makers = std::vector<std::unique_ptr<RowMaker>>;
+
+  template <typename Make>
+  static Makers made(std::size_t count, const Make& make) {
+    Makers makers;
+    for (std::size_t i = 0; i < count; ++i) makers.push_back(make());
+    return makers;
+  }
+  static std::vector<Ensemble*> ensembles_of(const Makers& makers) {
+    std::vector<Ensemble*> ensembles;
+    for (const auto& maker : makers) ensembles.push_back(&maker->ensemble());
+    return ensembles;
+  }
+
+  Makers makers_;
+  EnsemblePack ensembles_;
 };
 
 }  // namespace
@@ -221,28 +283,37 @@ TeacherSet collect_teacher_set(const Ensemble& ensemble, const CorrectionSpec& c
                        "a truth that has every component of the state");
   }
   const std::size_t runs = correction.training.runs;
-  std::vector<Rows> by_run(runs);
-  std::vector<std::optional<RowMaker>> makers(worker_count(options.threads));
-  const auto make = [&](std::size_t run, std::size_t worker) {
-    if (!makers[worker]) makers[worker].emplace(ensemble, correction, truth_space, truth_index, options.whole_tracks);
-    const RunKey key{options.seed, options.role, run};
-    return makers[worker]->rows(scenario.simulate(key), key);
+  const std::size_t together = runs_together(runs, options.threads);
+  std::vector<Rows> by_group((runs + together - 1) / together);
+  std::vector<std::optional<RowMakers>> makers(worker_count(options.threads));
+  const auto make = [&](std::size_t group, std::size_t worker) {
+    if (!makers[worker])
+      makers[worker].emplace(together, [&] {
+        return std::make_unique<RowMaker>(ensemble, correction, truth_space, truth_index, options.whole_tracks);
+      });
+    std::vector<RunKey> keys;
+    for (std::size_t run = group * together; run < std::min((group + 1) * together, runs); ++run)
+      keys.push_back({options.seed, options.role, run});
+    return makers[worker]->rows(scenario, keys);
   };
+  Progress progress;
+  if (options.progress)
+    progress = [&](std::size_t done, std::size_t) { options.progress(std::min(done * together, runs), runs); };
   if (options.ranks)
     share_work(
-        *options.ranks, runs, options.threads,
-        [&](std::size_t run, std::size_t worker) { return bytes_of(make(run, worker)); },
-        [&](std::size_t run, const std::string& bytes) { by_run[run] = rows_of(bytes); }, options.progress);
+        *options.ranks, by_group.size(), options.threads,
+        [&](std::size_t group, std::size_t worker) { return bytes_of(make(group, worker)); },
+        [&](std::size_t group, const std::string& bytes) { by_group[group] = rows_of(bytes); }, progress);
   else
     monte_carlo(
-        runs, options.threads, [&](std::size_t run, std::size_t worker) { by_run[run] = make(run, worker); },
-        options.progress);
+        by_group.size(), options.threads,
+        [&](std::size_t group, std::size_t worker) { by_group[group] = make(group, worker); }, progress);
   if (!is_first(options.ranks)) return {};
 
   const Eigen::Index d = static_cast<Eigen::Index>(correction.design.features.size());
   const Eigen::Index n = space.size();
   Eigen::Index total = 0;
-  for (const Rows& rows : by_run) total += static_cast<Eigen::Index>(rows.size()) / row_size(d, n);
+  for (const Rows& rows : by_group) total += static_cast<Eigen::Index>(rows.size()) / row_size(d, n);
   if (total == 0)
     throw InputError("training", "no step of the training runs can be taught", "records, truth and finite features");
   TeacherSet set{correction.design.features,
@@ -257,7 +328,7 @@ TeacherSet collect_teacher_set(const Ensemble& ensemble, const CorrectionSpec& c
                  {},
                  Eigen::MatrixXd(teacher < 0 ? 0 : total, n)};
   Eigen::Index next = 0;
-  for (const Rows& rows : by_run) {
+  for (const Rows& rows : by_group) {
     const Eigen::Index count = static_cast<Eigen::Index>(rows.size()) / row_size(d, n);
     const Eigen::Map<const Eigen::MatrixXd> columns(rows.data(), row_size(d, n), count);  // a row to a column
     Eigen::Index part = 0;
@@ -268,7 +339,7 @@ TeacherSet collect_teacher_set(const Ensemble& ensemble, const CorrectionSpec& c
     }
     if (options.whole_tracks) {
       for (Eigen::Index row = 0; row < count; ++row) {
-        set.begins.push_back(columns(part, row) != 0.0 || row == 0);
+        set.begins.push_back(columns(part, row) != 0.0);
         set.taught.push_back(columns(part + 1, row) != 0.0);
         set.used.push_back(columns(part + 2, row) != 0.0);
       }

@@ -106,12 +106,19 @@ class TuningRuns {
     const std::vector<Scorer> scorers{Scorer(study_.scenario().truth_space(), tracker.space())};
     const std::size_t quantities = scorers.front().quantities().size();
     std::vector<TuningFigures> figures(recordings_.size(), TuningFigures(quantities));
-    std::vector<std::optional<TrackerSet>> sets(worker_count(threads_));
+    std::vector<std::unique_ptr<TrackerSetPack>> packs(worker_count(threads_));
     const BlockRange own = own_runs(ranks_, recordings_.size());
-    monte_carlo(own.size(), threads_, [&](std::size_t i, std::size_t worker) {
-      const std::size_t run = own.first + i * own.stride;
-      if (!sets[worker]) sets[worker].emplace(prototype.fresh());
-      figures[run] = TuningFigures(score_recording(*sets[worker], scorers, recordings_[run], study_.scoring()).front());
+    const std::size_t together = runs_together(own.size(), threads_);
+    monte_carlo((own.size() + together - 1) / together, threads_, [&](std::size_t group, std::size_t worker) {
+      if (!packs[worker]) packs[worker] = std::make_unique<TrackerSetPack>(prototype, together);
+      std::vector<std::size_t> runs;
+      std::vector<const Recording*> recordings;
+      for (std::size_t i = group * together; i < std::min((group + 1) * together, own.size()); ++i) {
+        runs.push_back(own.first + i * own.stride);
+        recordings.push_back(&recordings_[runs.back()]);
+      }
+      const auto scores = score_recordings(*packs[worker], scorers, recordings, study_.scoring());
+      for (std::size_t i = 0; i < runs.size(); ++i) figures[runs[i]] = TuningFigures(scores[i].front());
     });
     if (ranks_) exchange(*ranks_, logarithms, figures);
     Tuned tuned{0.0, 0.0, scorers.front().dimension()};

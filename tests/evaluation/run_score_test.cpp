@@ -105,6 +105,42 @@ TEST(ScoreRecording, SetIsResetFirst) {
   EXPECT_EQ(first.nees, second.nees);
 }
 
+// Several at once, of unequal lengths: each as by itself.
+TEST(ScoreRecordings, AreThoseOfEachAlone) {
+  Ensemble ensemble;
+  ensemble.add("plain", RadarFilter{}.tracker());
+  ensemble.add(
+      "raw", std::make_unique<RawTracker>(state_space_of_components({"position_m"}), BoundedVector::Constant(1, 2.0)));
+  TrackerSet set(std::move(ensemble));
+  set.show_member("plain");
+  set.show_member("raw");
+  const std::vector<Scorer> scorers{Scorer(line_space(), set.space(0)), Scorer(line_space(), set.space(1))};
+  std::vector<Recording> recordings;
+  for (const int steps : {30, 12, 1, 30, 25})
+    recordings.push_back(testing::radar_family(steps).simulate({1, Role::evaluation, recordings.size()}));
+  recordings[3].measurements[7].z[0] = kNaN;
+  TrackerSetPack pack(set, 6);
+  std::vector<const Recording*> some;
+  for (const Recording& recording : recordings) some.push_back(&recording);
+  std::vector<std::size_t> scored(recordings.size());
+  const ScoringRule rule{.from_step = 3, .loss_thresholds = {}};
+  for (int again = 0; again < 2; ++again) {
+    const auto scores = score_recordings(pack, scorers, some, rule, [&](std::size_t i, std::size_t) { ++scored[i]; });
+    ASSERT_EQ(scores.size(), recordings.size());
+    for (std::size_t i = 0; i < recordings.size(); ++i) {
+      const std::vector<RunScore> alone = score_recording(set, scorers, recordings[i], rule);
+      for (std::size_t tracker = 0; tracker < 2; ++tracker)
+        for (std::size_t step = 0; step < recordings[i].measurements.size(); ++step) {
+          const double error = alone[tracker].error[0][step];
+          EXPECT_TRUE(scores[i][tracker].error[0][step] == error ||
+                      (std::isnan(error) && std::isnan(scores[i][tracker].error[0][step])))
+              << "recording " << i << " tracker " << tracker << " step " << step;
+        }
+    }
+  }
+  EXPECT_THAT(scored, ElementsAre(56u, 20u, 0u, 56u, 46u));
+}
+
 TEST(ScoreRecording, NeedsTheTruthOfATarget) {
   Recording recording = testing::radar_family(3).simulate({});
   recording.truth.clear();

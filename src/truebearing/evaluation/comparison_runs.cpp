@@ -73,6 +73,8 @@ std::vector<RunOutcome> ComparisonRuns::outcomes(std::size_t set, std::size_t fi
     recordings.push_back(scenarios_[set].scenario->simulate({options_.seed, options_.role, first + i}));
     if (options_.details) outcomes[i].corrections = correction_tallies(copies.set(i));
   }
+  std::vector<const Recording*> all;
+  for (const Recording& recording : recordings) all.push_back(&recording);
   std::function<void(std::size_t, std::size_t)> tell_details;
   if (options_.details)
     tell_details = [&](std::size_t i, std::size_t step) {
@@ -83,8 +85,7 @@ std::vector<RunOutcome> ComparisonRuns::outcomes(std::size_t set, std::size_t fi
           tallies[entry]->take(step, copy.records(static_cast<int>(entry)),
                                copy.correction(static_cast<int>(entry))->accounts());
     };
-  std::vector<std::vector<RunScore>> scores =
-      score_recordings(copies, scorers_, recordings, options_.scoring, tell_details);
+  std::vector<std::vector<RunScore>> scores = score_recordings(copies, scorers_, all, options_.scoring, tell_details);
   for (std::size_t i = 0; i < count; ++i) {
     RunOutcome& outcome = outcomes[i];
     const Recording& recording = recordings[i];

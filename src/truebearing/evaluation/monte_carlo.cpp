@@ -8,10 +8,17 @@
 #include <tbb/task_arena.h>
 #include <thread>
 
+#include "truebearing/filter/lane_mask.hpp"
+
 namespace truebearing {
 
 std::size_t worker_count(int threads) {
   return threads > 0 ? static_cast<std::size_t>(threads) : std::max(1u, std::thread::hardware_concurrency());
+}
+
+std::size_t runs_together(std::size_t runs, int threads) {
+  constexpr std::size_t kMost = kPackLanes, kTurnsOfAWorker = 2;
+  return std::clamp(runs / (kTurnsOfAWorker * worker_count(threads)), std::size_t{1}, kMost);
 }
 
 void monte_carlo(std::size_t runs, int threads, const std::function<void(std::size_t run, std::size_t worker)>& body,

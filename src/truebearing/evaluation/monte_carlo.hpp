@@ -18,4 +18,8 @@ void monte_carlo(std::size_t runs, int threads, const std::function<void(std::si
 
 std::size_t worker_count(int threads);
 
+/// How many runs of so many are best made together by a worker, side by side in the lanes of registers (tracker_pack.hpp):
+/// 1 to kPackLanes, and no more than leave each worker something to do.
+std::size_t runs_together(std::size_t runs, int threads);
+
 }  // namespace truebearing

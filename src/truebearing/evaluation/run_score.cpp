@@ -149,20 +149,20 @@ std::vector<RunScore> score_recording(TrackerSet& trackers, const std::vector<Sc
 }
 
 std::vector<std::vector<RunScore>> score_recordings(
-    TrackerSetPack& trackers, const std::vector<Scorer>& scorers, std::span<const Recording> recordings,
+    TrackerSetPack& trackers, const std::vector<Scorer>& scorers, std::span<const Recording* const> recordings,
     const ScoringRule& rule, const std::function<void(std::size_t recording, std::size_t step)>& scored) {
   std::vector<RunsScorer> runs;
   std::size_t steps = 0;
   for (std::size_t i = 0; i < recordings.size(); ++i) {
-    runs.emplace_back(scorers, recordings[i], rule);
+    runs.emplace_back(scorers, *recordings[i], rule);
     trackers.set(i).reset();
-    trackers.set(i).foresee(recordings[i].measurements);
-    steps = std::max(steps, recordings[i].measurements.size());
+    trackers.set(i).foresee(recordings[i]->measurements);
+    steps = std::max(steps, recordings[i]->measurements.size());
   }
   std::vector<const Measurement*> measurements(trackers.size());
   for (std::size_t step = 0; step < steps; ++step) {
     for (std::size_t i = 0; i < recordings.size(); ++i)
-      measurements[i] = step < recordings[i].measurements.size() ? &recordings[i].measurements[step] : nullptr;
+      measurements[i] = step < recordings[i]->measurements.size() ? &recordings[i]->measurements[step] : nullptr;
     trackers.step(measurements);
     for (std::size_t i = 0; i < recordings.size(); ++i)
       if (measurements[i] && runs[i].take(step, trackers.set(i)) && scored) scored(i, step);

@@ -70,7 +70,7 @@ std::vector<RunScore> score_recording(TrackerSet& trackers, const std::vector<Sc
 /// The same of several recordings at once, each by a copy of the set: [recording][tracker]. At most as many as the pack
 /// has copies. scored: called with the recording and the step.
 std::vector<std::vector<RunScore>> score_recordings(
-    TrackerSetPack& trackers, const std::vector<Scorer>& scorers, std::span<const Recording> recordings,
+    TrackerSetPack& trackers, const std::vector<Scorer>& scorers, std::span<const Recording* const> recordings,
     const ScoringRule& rule, const std::function<void(std::size_t recording, std::size_t step)>& scored = {});
 
 }  // namespace truebearing

@@ -163,6 +163,7 @@ struct Combining {
         terms.sum(r, nu[m]);
         Some::store(nu[m], first, combined.nu[m]);
       }
+      Table<Doubles, M, M> S;
       for (int m = 0; m < M; ++m)
         for (int l = 0; l <= m; ++l) {
           for (int j = 0; j < r; ++j) {
@@ -173,10 +174,21 @@ struct Combining {
             Some::load(updates[j].S[m][l], first, value);
             terms.mode[j] = share.mode[j] * (value + square);
           }
-          terms.sum(r, value);
-          Some::store(value, first, combined.S[m][l]);
-          Some::store(value, first, combined.S[l][m]);
+          terms.sum(r, S[m][l]);
+          Some::store(S[m][l], first, combined.S[m][l]);
+          Some::store(S[m][l], first, combined.S[l][m]);
         }
+      Doubles nis{};
+      for (int k = 0; k < M; ++k) {  // as mahalanobis_squared() does
+        const Doubles inverse = 1.0 / S[k][k];
+        nis += nu[k] * nu[k] * inverse;
+        for (int i = k + 1; i < M; ++i) {
+          const Doubles factor = S[i][k] * inverse;
+          nu[i] -= factor * nu[k];
+          for (int l = k + 1; l <= i; ++l) S[i][l] -= factor * S[l][k];
+        }
+      }
+      Some::store(nis, first, combined.nis);
     }
   }
   TRUEBEARING_FOR_WIDEST(innovations,

@@ -19,7 +19,7 @@ void mix_entries(const FilterBlock<N>* modes, int r, const OfFilters* weights, F
 template <int N>
 void mix_models(const FilterBlock<N>* modes, int r, const OfFilters* weights, FilterBlock<N>& mixed);
 
-/// nu and S of the mixture of what the modes expected, which have the weights c.
+/// nu, S and the NIS of the mixture of what the modes expected, which have the weights c.
 template <int N, int M>
 void combine_innovations(const UpdateBlock<N>* updates, int r, const OfFilters* c, UpdateBlock<N>& combined);
 /// The gain that the modes have together.

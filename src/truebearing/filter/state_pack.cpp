@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "truebearing/core/constants.hpp"
-#include "truebearing/core/covariance.hpp"
 #include "truebearing/core/with_count.hpp"
 #include "truebearing/filter/filter_kinds.hpp"
 #include "truebearing/filter/interacting_multiple_model.hpp"
@@ -138,7 +137,7 @@ class FilterPack final : public StatePack {
       for (int k = 0; k < m; ++k) update.S(k, l) = from.S[k][l][lane];
       for (int i = 0; i < N; ++i) update.K(i, l) = from.K[i][l][lane];
     }
-    update.nis = is_multiple() ? mahalanobis_squared(update.S, update.nu) : from.nis[lane];
+    update.nis = from.nis[lane];
   }
 
   void mode_probabilities(int lane, ModeVector& mu) const override {

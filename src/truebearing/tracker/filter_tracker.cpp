@@ -9,6 +9,7 @@
 
 #include "truebearing/core/unfilled.hpp"
 #include "truebearing/core/with_count.hpp"
+#include "truebearing/tracker/publishable.hpp"
 
 namespace truebearing {
 namespace {
@@ -20,7 +21,6 @@ constexpr int kFailedInRow = 3;
 // `positions` components are its place. Written for few instructions: every step asks twice.
 template <int N>
 bool is_sensible(const double* x, const double* P, int positions) {
-  constexpr double kFarthest_m = 1e7;
   double sums[static_cast<std::size_t>(N > 0 ? N : 1)];  // not finite where a number is not; several, for none to wait
   for (int i = 0; i < N; ++i) sums[i] = x[i];
   for (int j = 0; j < N; ++j)

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "truebearing/core/unfilled.hpp"
+#include "truebearing/tracker/publishable.hpp"
 
 namespace truebearing {
 
@@ -99,10 +100,26 @@ bool FilterTracker::settle(const StatePack& pack, int lane, const Measurement& m
   return true;
 }
 
+// Of a pack that is certain of its estimate; false where no target can be there.
 bool FilterTracker::show(const StatePack& pack, int lane, BoundedVector& x, BoundedMatrix& P) const {
-  double held_x[kMaxDimension], held_P[kMaxDimension * kMaxDimension];
-  pack.estimate(lane, held_x, held_P);
-  return copy_published(held_x, held_P, x, P);
+  const int n = space_->size(), all = state_->size();
+  x.resize(n);
+  P.resize(n, n);
+  if (n == all) {
+    pack.estimate(lane, x.data(), P.data());
+  } else {
+    BoundedVector whole_x(all);
+    BoundedMatrix whole_P(all, all);
+    pack.estimate(lane, whole_x.data(), whole_P.data());
+    x = whole_x.head(n);
+    P = whole_P.topLeftCorner(n, n);
+  }
+  // Number by number, as it was written.
+  bool sensible = true;
+  for (int i = 0; i < n; ++i) sensible &= std::isfinite(x[i]) & std::isfinite(P(i, i));
+  for (int i = 0; i < n / 2; ++i)
+    sensible &= (std::abs(x[i]) <= kFarthest_m) & (P(i, i) <= kFarthest_m * kFarthest_m);
+  return sensible;
 }
 
 void FilterTracker::come_home() const {

@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kResampleBelow = 0.5;  // effective particles, of all
 constexpr double kEagerness = 2.0;      // of legs to end: manoeuvres that begin are what a cloud lacks particles of
-constexpr double kFarthest_m = 1e7;
 /// A measurement farther off than chance explains (chi-square of two: once in e^(kLost / 2)) means that the likely
 /// particles have died out.
 constexpr double kLost = 40.0;

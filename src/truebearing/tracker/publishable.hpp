@@ -6,6 +6,9 @@
 
 namespace truebearing {
 
+/// No target is farther away than this.
+inline constexpr double kFarthest_m = 1e7;
+
 /// Gives a record its status: `failed` where x or P is not finite or a variance is below zero.
 inline void set_status(StepStatus status, StepRecord& record) {
   const bool publishable = record.x.allFinite() && record.P.allFinite() && (record.P.diagonal().array() >= 0.0).all();

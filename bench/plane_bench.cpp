@@ -105,14 +105,43 @@ void step_all(benchmark::State& state, Stepped& stepped) {
   count_steps(state);
 }
 
+FilterTracker of_positions(std::unique_ptr<TrackedState> filter) {
+  return {plane_space(), std::move(filter), sensor_of(PositionSensor<2>{{kSigma_m, kSigma_m}, 1.0}), TwoPointStart{}};
+}
+
 void tracker_cv(benchmark::State& state) {
   const auto tracker = cv_tracker(8.0);
   step_all(state, *tracker);
 }
 void tracker_imm6(benchmark::State& state) {
-  FilterTracker tracker(plane_space(), six_models(), sensor_of(PositionSensor<2>{{kSigma_m, kSigma_m}, 1.0}),
-                        TwoPointStart{});
+  FilterTracker tracker = of_positions(six_models());
   step_all(state, tracker);
+}
+// Eight of them in a pack (tracker_pack.hpp), each on the same stream; the time is that of one.
+void step_together(benchmark::State& state, const FilterTracker& prototype) {
+  const std::vector<Measurement> measurements = stream();
+  const std::unique_ptr<TrackerPack> pack = prototype.pack();
+  if (!pack) return state.SkipWithError("no pack on this processor");
+  std::vector<std::unique_ptr<Tracker>> trackers;
+  for (int i = 0; i < kPackLanes; ++i) trackers.push_back(prototype.fresh());
+  std::vector<TrackerPack::Lane> lanes(kPackLanes);
+  for (auto _ : state) {
+    for (const auto& tracker : trackers) tracker->reset();
+    for (const Measurement& measurement : measurements) {
+      for (std::size_t i = 0; i < lanes.size(); ++i) lanes[i] = {trackers[i].get(), &measurement};
+      pack->step(lanes);
+      benchmark::ClobberMemory();
+    }
+  }
+  state.counters["per_step"] = benchmark::Counter(
+      kSteps * kPackLanes, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+void together_cv(benchmark::State& state) {
+  step_together(state, of_positions(state_of<KalmanFilter<4>>(kCv)));
+}
+void together_imm6(benchmark::State& state) {
+  step_together(state, of_positions(six_models()));
 }
 void tracker_ensemble(benchmark::State& state) {
   Ensemble members = ensemble();
@@ -125,6 +154,8 @@ void tracker_corrected(benchmark::State& state) {
 }
 BENCHMARK(tracker_cv);
 BENCHMARK(tracker_imm6);
+BENCHMARK(together_cv);
+BENCHMARK(together_imm6);
 BENCHMARK(tracker_ensemble);
 BENCHMARK(tracker_corrected)->ArgName("rules")->Arg(32)->Arg(64);
 

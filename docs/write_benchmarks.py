@@ -72,6 +72,8 @@ PLANE = ["a step"], [
     ("unscented: turn rate estimated", "ns", ["plane/unscented_turning"]),
     ("tracker: constant velocity", "ns", ["plane/tracker_cv"]),
     ("tracker: IMM of six modes", "ns", ["plane/tracker_imm6"]),
+    ("one of eight trackers in a pack: constant velocity", "ns", ["plane/together_cv"]),
+    ("one of eight trackers in a pack: IMM of six modes", "ns", ["plane/together_imm6"]),
     ("two trackers", "ns", ["plane/tracker_ensemble"]),
     ("two trackers and a correction of 32 rules", "ns", ["plane/tracker_corrected/rules:32"]),
     ("on the line: three trackers", "ns", ["correction/ensemble"]),

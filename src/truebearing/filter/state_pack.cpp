@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -120,6 +121,22 @@ class FilterPack final : public StatePack {
     }
     held_.swap(next_);
     held_mu_.swap(mu_);
+  }
+
+  LaneMask within(LaneMask lanes, int positions, double farthest) const override {
+    const kernels::FilterBlock<N>& shown = is_multiple() ? mixed_ : next_.front();
+    std::array<bool, kPackLanes> is_within;
+    is_within.fill(true);
+    for (int i = 0; i < N; ++i) {
+      const double most = i < positions ? farthest : std::numeric_limits<double>::max();
+      const double most_variance = i < positions ? farthest * farthest : most;
+      for (int lane = 0; lane < kPackLanes; ++lane)
+        is_within[static_cast<std::size_t>(lane)] &=
+            (std::abs(shown.x[i][lane]) <= most) & (shown.P[i][i][lane] <= most_variance);
+    }
+    for (int lane = 0; lane < kPackLanes; ++lane)
+      if (!is_within[static_cast<std::size_t>(lane)]) lanes &= static_cast<LaneMask>(~lane_bit(lane));
+    return lanes;
   }
 
   void estimate(int lane, double* x, double* P) const override {

@@ -29,7 +29,10 @@ class StatePack {
   /// That is what those lanes hold from now on; others hold what they held.
   virtual void keep(LaneMask lanes) = 0;
 
-  // Of what is held, predicted or updated, whichever came last; of lanes of which that was certain.
+  // Of what was predicted or updated, whichever came last; of lanes of which that was certain.
+  /// Those of the lanes of which x and P are finite, the first `positions` components of x at most `farthest` from zero,
+  /// and their variances at most its square.
+  virtual LaneMask within(LaneMask lanes, int positions, double farthest) const = 0;
   /// x (n), P (n x n, by columns).
   virtual void estimate(int lane, double* x, double* P) const = 0;
   /// What TrackedState::update() leaves behind.

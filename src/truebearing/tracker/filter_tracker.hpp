@@ -102,9 +102,8 @@ class FilterTracker : public Successor {
 
   // Of a step in a pack (filter_tracker_pack.cpp).
   bool is_ordinary(const Measurement& measurement) const;
-  bool show_prediction(const StatePack& pack, int lane);
   bool settle(const StatePack& pack, int lane, const Measurement& measurement, const AnyMeasurement& taken);
-  bool show(const StatePack& pack, int lane, BoundedVector& x, BoundedMatrix& P) const;
+  void show(const StatePack& pack, int lane, BoundedVector& x, BoundedMatrix& P) const;
   void come_home() const;
 
   const StateSpace* space_;

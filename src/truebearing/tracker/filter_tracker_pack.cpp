@@ -16,6 +16,7 @@ std::unique_ptr<TrackerPack> FilterTracker::pack() const {
 }
 
 void FilterTrackerPack::step(std::span<Lane> lanes) {
+  if (lanes.empty()) return;
   std::array<double, kPackLanes> dt_s{};
   std::array<const AnyMeasurement*, kPackLanes> taken{};
   const auto tracker_in = [&](int lane) -> FilterTracker& {
@@ -47,15 +48,16 @@ void FilterTrackerPack::step(std::span<Lane> lanes) {
     states_->enter(lane, *tracker.state_);
   });
 
-  LaneMask done = together == 0 ? LaneMask{0} : states_->predict(together, dt_s.data());
+  const FilterTracker& any = tracker_in(0);
+  const auto sensible = [&](LaneMask some) { return states_->within(some, any.space_->size() / 2, kFarthest_m); };
+  LaneMask done = together == 0 ? LaneMask{0} : sensible(states_->predict(together, dt_s.data()));
   each_of(done, [&](int lane, FilterTracker& tracker, Lane& of_lane) {
     tracker.begin_record(*of_lane.measurement);
-    if (tracker.show_prediction(*states_, lane))
-      taken[static_cast<std::size_t>(lane)] = &tracker.sensor_->take(*of_lane.measurement, *tracker.record_.prediction);
-    else
-      done &= static_cast<LaneMask>(~lane_bit(lane));
+    Prediction& prediction = tracker.record_.prediction.emplace(Unfilled());
+    tracker.show(*states_, lane, prediction.x, prediction.P);
+    taken[static_cast<std::size_t>(lane)] = &tracker.sensor_->take(*of_lane.measurement, prediction);
   });
-  done = states_->update(done, taken.data());
+  done = sensible(states_->update(done, taken.data()));
   each_of(done, [&](int lane, FilterTracker& tracker, Lane& of_lane) {
     if (tracker.settle(*states_, lane, *of_lane.measurement, *taken[static_cast<std::size_t>(lane)]))
       of_lane.records = {&tracker.record_, 1};
@@ -74,11 +76,6 @@ bool FilterTracker::is_ordinary(const Measurement& measurement) const {
   return usable_ && dt_s > 0.0 && dt_s <= options_.lost_after_s;
 }
 
-bool FilterTracker::show_prediction(const StatePack& pack, int lane) {
-  Prediction& prediction = record_.prediction.emplace(Unfilled());
-  return show(pack, lane, prediction.x, prediction.P);
-}
-
 // What go_on() comes to, where nothing out of the ordinary happens. False, and nothing decided, otherwise.
 bool FilterTracker::settle(const StatePack& pack, int lane, const Measurement& measurement,
                            const AnyMeasurement& taken) {
@@ -87,7 +84,7 @@ bool FilterTracker::settle(const StatePack& pack, int lane, const Measurement& m
   pack.update_of(lane, {innovation.nu, innovation.S, gain, innovation.nis});
   Gate& gate = gate_of(measurement);
   if (!std::isfinite(innovation.nis) || innovation.nis > gate.threshold()) return false;
-  if (!show(pack, lane, record_.x, record_.P)) return false;
+  show(pack, lane, record_.x, record_.P);
   gate.judge(innovation.nis);
   forget_challenger();
   failed_in_row_ = 0;
@@ -100,26 +97,14 @@ bool FilterTracker::settle(const StatePack& pack, int lane, const Measurement& m
   return true;
 }
 
-// Of a pack that is certain of its estimate; false where no target can be there.
-bool FilterTracker::show(const StatePack& pack, int lane, BoundedVector& x, BoundedMatrix& P) const {
+void FilterTracker::show(const StatePack& pack, int lane, BoundedVector& x, BoundedMatrix& P) const {
   const int n = space_->size(), all = state_->size();
-  x.resize(n);
-  P.resize(n, n);
-  if (n == all) {
-    pack.estimate(lane, x.data(), P.data());
-  } else {
-    BoundedVector whole_x(all);
-    BoundedMatrix whole_P(all, all);
-    pack.estimate(lane, whole_x.data(), whole_P.data());
-    x = whole_x.head(n);
-    P = whole_P.topLeftCorner(n, n);
-  }
-  // Number by number, as it was written.
-  bool sensible = true;
-  for (int i = 0; i < n; ++i) sensible &= std::isfinite(x[i]) & std::isfinite(P(i, i));
-  for (int i = 0; i < n / 2; ++i)
-    sensible &= (std::abs(x[i]) <= kFarthest_m) & (P(i, i) <= kFarthest_m * kFarthest_m);
-  return sensible;
+  x.resize(all);
+  P.resize(all, all);
+  pack.estimate(lane, x.data(), P.data());
+  if (n == all) return;
+  x.conservativeResize(n);
+  P.conservativeResize(n, n);
 }
 
 void FilterTracker::come_home() const {

@@ -179,7 +179,7 @@ template <int kWidth>
 template <int kWidth>
 [[gnu::always_inline]] inline void rule_answer_loops(const RuleBlocks& rules, const RuleTables& said, const double* u,
                                                      double* numbers, double* matrix) {
-  double phi[kMostRules];
+  alignas(64) double phi[kMostRules];
   const double total = unscaled_strengths<kWidth>(rules, u, phi);
   means<kWidth>(said, phi, 1.0 / total, numbers, matrix);
 }

@@ -61,23 +61,35 @@ void check(const FeatureSpec& feature, const StateSpace& space, const StateSpace
   if (needs.blocks.neighbour && !blocks.neighbour) throw missing("neighbour");
 }
 
+// Most measured vectors are of two components: written and read as one, what is read just after it was written need
+// not wait for the memory.
+auto first_two(BoundedVector& v) {
+  return Eigen::Map<Eigen::Vector2d, Eigen::Aligned16>(v.data());
+}
+auto first_two(const BoundedVector& v) {
+  return Eigen::Map<const Eigen::Vector2d, Eigen::Aligned16>(v.data());
+}
+
 // e of an innovation: each component over its own standard deviation. In a frame that turns with the target it must not
 // matter which way the axes of the plane point, so that there e = S^-1/2 nu with the symmetric root, which turns as nu
 // does; where the components are not correlated the two are the same. Up, which does not turn, is by itself.
-BoundedVector normalised(const Innovation& innovation, Frame frame) {
+void normalise(const Innovation& innovation, Frame frame, BoundedVector& e) {
   const BoundedMatrix& S = innovation.S;
   const Eigen::Index m = S.rows();
   const bool turns = frame != Frame::state && (m == 2 || m == 3) && S(0, 1) != 0.0;
-  BoundedVector e(m);
+  e.resize(m);
+  if (m == 2 && !turns) {
+    first_two(e) = first_two(innovation.nu).cwiseQuotient(Eigen::Vector2d(S(0, 0), S(1, 1)).cwiseSqrt());
+    return;
+  }
   for (Eigen::Index i = turns ? 2 : 0; i < m; ++i) e[i] = innovation.nu[i] / std::sqrt(S(i, i));
-  if (!turns) return e;
+  if (!turns) return;
   // S^1/2 = (S + s I) / t with s = sqrt(det S), t = sqrt(tr S + 2 s).
   const double s = std::sqrt(std::max(S(0, 0) * S(1, 1) - S(0, 1) * S(1, 0), 0.0));
   const double t = std::sqrt(S(0, 0) + S(1, 1) + 2.0 * s);
   const double a = S(0, 0) + s, b = S(0, 1), c = S(1, 1) + s, scale = t / (a * c - b * b);
   e[0] = scale * (c * innovation.nu[0] - b * innovation.nu[1]);
   e[1] = scale * (a * innovation.nu[1] - b * innovation.nu[0]);
-  return e;
 }
 
 // Whether such a feature is a component of a vector that is remembered.
@@ -110,6 +122,7 @@ FeatureExtractor::FeatureExtractor(std::vector<FeatureSpec> features, const Stat
   if (features_.empty() || features_.size() > FuzzyNetwork::kMaxInputs)
     throw InputError("features", fmt::format("there are {}", features_.size()),
                      fmt::format("1 to {}", FuzzyNetwork::kMaxInputs));
+  Eigen::Index place = 0;
   for (const FeatureSpec& feature : features_) {
     check(feature, space, components, blocks_of);
     int companion = -1;
@@ -121,11 +134,15 @@ FeatureExtractor::FeatureExtractor(std::vector<FeatureSpec> features, const Stat
     wants_sigma_ |= feature.scale_is_sigma || feature.kind == FeatureKind::log_sigma;
     wants_gain_ |= feature.kind == FeatureKind::gain;
     const bool is_average = feature.kind == FeatureKind::innovation_average;
-    terms_.push_back({feature.kind, std::max(components.component_index(feature.component), 0), companion,
-                      memory_of(feature.kind, companion, feature.alpha, feature.mode - 1), feature.offset,
-                      feature.scale, feature.scale_is_sigma, feature.mode - 1, feature.sensor - 1,
-                      is_average ? std::sqrt(feature.alpha / (2.0 - feature.alpha)) : 1.0,
-                      is_remembered(feature.kind)});
+    const int component = std::max(components.component_index(feature.component), 0);
+    const std::size_t memory = memory_of(feature.kind, companion, feature.alpha, feature.mode - 1);
+    if (is_remembered(feature.kind))
+      remembered_.push_back(
+          {place, memory, component, is_average ? std::sqrt(feature.alpha / (2.0 - feature.alpha)) : 1.0});
+    else
+      terms_.push_back({place, feature.kind, component, companion, memory, feature.offset, feature.scale,
+                        feature.scale_is_sigma, feature.mode - 1, feature.sensor - 1});
+    ++place;
   }
 }
 
@@ -169,29 +186,34 @@ void FeatureExtractor::extract(const StepRecord& base, std::span<const StepRecor
   const auto record_of = [&](int companion) {
     return companion < 0 ? &base : companions[static_cast<std::size_t>(companion)];
   };
+  const auto is_known = [&](const StepRecord* record) { return record && record->x.size() == base.x.size(); };
   for (Memory& memory : memories_) {
-    if (const StepRecord* record = record_of(memory.companion)) remember(memory, *record);
-    if (is_remembered(memory.kind)) turn(memory);
+    const StepRecord* record = record_of(memory.companion);
+    if (record) remember(memory, *record);
+    if (is_remembered(memory.kind)) turn(memory, is_known(record));
   }
   features.resize(size());
-  double* feature = features.data();
+  for (const RememberedTerm& term : remembered_)
+    features[term.place] = memories_[term.memory].in_frame[static_cast<std::size_t>(term.component)] / term.deviation;
   for (const Term& term : terms_) {
-    const StepRecord* companion = term.companion < 0 ? nullptr : record_of(term.companion);
-    const bool is_known = term.companion < 0 || (companion && companion->x.size() == base.x.size());
-    if (!is_known)
-      *feature++ = kNaN;
-    else if (term.is_remembered)
-      *feature++ = memories_[term.memory].in_frame[static_cast<std::size_t>(term.component)] / term.deviation;
-    else
-      *feature++ = value(term, base, companion);
+    const StepRecord* record = record_of(term.companion);
+    features[term.place] = is_known(record) ? value(term, base, term.companion < 0 ? nullptr : record) : kNaN;
   }
 }
 
-// Of the step's rotation.
-void FeatureExtractor::turn(Memory& memory) const {
+// Of the step's rotation; no number where it is not known whose memory it is.
+void FeatureExtractor::turn(Memory& memory, bool is_known) const {
   const Eigen::Index m = memory.value.size();
-  memory.in_frame.fill(0.0);
-  if (rotation_.rotates() && m < 2) return;
+  if (is_known && m == 2 && memory.framed == 2) {  // as most are
+    Eigen::Vector2d turned = first_two(memory.value);
+    rotation_.turn(turned);
+    memory.in_frame[0] = turned[0];
+    memory.in_frame[1] = turned[1];
+    return;
+  }
+  memory.framed = is_known ? m : -1;
+  memory.in_frame.fill(is_known ? 0.0 : kNaN);
+  if (!is_known || (rotation_.rotates() && m < 2)) return;
   Eigen::Map<BoundedVector> turned(memory.in_frame.data(), m);
   for (Eigen::Index i = 0; i < m; ++i) turned[i] = memory.value[i];
   rotation_.turn(turned);
@@ -215,8 +237,12 @@ void FeatureExtractor::remember(Memory& memory, const StepRecord& record) {
       const double alpha = memory.kind == FeatureKind::innovation ? 1.0 : memory.alpha;
       const BoundedVector& e = normalised_innovation(record);
       if (value.size() != e.size()) value = BoundedVector::Zero(e.size());
-      for (Eigen::Index i = 0; i < value.size(); ++i)
-        value[i] = alpha == 1.0 ? e[i] : value[i] + alpha * (e[i] - value[i]);
+      if (alpha == 1.0)
+        value = e;
+      else if (e.size() == 2)
+        first_two(value) += alpha * (first_two(e) - first_two(value));
+      else
+        value += alpha * (e - value);
       break;
     }
     case FeatureKind::log_nis_average:
@@ -254,7 +280,7 @@ void FeatureExtractor::remember(Memory& memory, const StepRecord& record) {
 
 const BoundedVector& FeatureExtractor::normalised_innovation(const StepRecord& record) {
   if (normalised_of_ != &record) {
-    normalised_ = normalised(*record.innovation, frame_);
+    normalise(*record.innovation, frame_, normalised_);
     normalised_of_ = &record;
   }
   return normalised_;

@@ -53,8 +53,17 @@ class FeatureExtractor {
     BoundedVector value = BoundedVector::Zero(1);     // a number, or a vector in the state's own frame
     double used = 0.0;                                // steps in which the measurement was used
     std::array<double, kMaxDimension> in_frame = {};  // of a vector; zero before the first used measurement
+    Eigen::Index framed = 0;                          // how many of these say something; -1: none is a number
+  };
+  // A component of what is remembered, and nothing else.
+  struct RememberedTerm {
+    Eigen::Index place;  // among the features
+    std::size_t memory;
+    int component;
+    double deviation;  // of an average, if what is averaged is white; else 1
   };
   struct Term {
+    Eigen::Index place;
     FeatureKind kind;
     int component;
     int companion;       // -1: none
@@ -63,21 +72,20 @@ class FeatureExtractor {
     bool scale_is_sigma;
     int mode;
     int sensor;
-    double deviation;    // of an average, if what is averaged is white; else 1
-    bool is_remembered;  // a component of what is remembered, and nothing else
   };
 
   std::size_t memory_of(FeatureKind kind, int companion, double alpha, int mode);
   void begin_track(const StepRecord& base);
   void remember(Memory& memory, const StepRecord& record);
-  void turn(Memory& memory) const;
+  void turn(Memory& memory, bool is_known) const;
   const BoundedVector& normalised_innovation(const StepRecord& record);
   double value(const Term& term, const StepRecord& base, const StepRecord* companion) const;
 
   Frame frame_ = Frame::state;
   std::vector<FeatureSpec> features_;
   std::vector<std::string> companions_;
-  std::vector<Term> terms_;
+  std::vector<RememberedTerm> remembered_;
+  std::vector<Term> terms_;  // the others
   std::vector<Memory> memories_;
   bool wants_sigma_ = false;
   bool wants_gain_ = false;

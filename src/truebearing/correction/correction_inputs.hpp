@@ -37,21 +37,13 @@ class OutputUnits {
     return inverse().asDiagonal() * in_frame(P) * inverse().asDiagonal();
   }
 
-  /// Makes of the covariance P of `covariance_of` the correction's own, as NetworkAnswer::covariance() does in the
-  /// frame.
+  /// Makes of the covariance P of `covariance_of` (n x n) the correction's own: NetworkAnswer::make_own(), turned back.
   template <typename Matrix>
   void own_covariance(const NetworkAnswer& answer, Matrix& P) const {
-    if (answer.moments.size() == 0) {
-      P *= answer.inflation;
-      return;
-    }
-    const auto sigma = rotation_.variances(P).cwiseSqrt().eval();
-    const double* const moments = answer.moments.data();
-    const Eigen::Index n = P.rows();
-    for (Eigen::Index j = 0; j < n; ++j)
-      for (Eigen::Index i = 0; i < n; ++i) P(i, j) = sigma[i] * sigma[j] * moments[i + n * j];
-    rotation_.turn_covariance(P);
+    answer.make_own(P, [&] { return rotation_.variances(P).cwiseSqrt().eval(); });
+    if (answer.moments.size() > 0) rotation_.turn_covariance(P);
   }
+  const FrameRotation& rotation() const { return rotation_; }
 
  private:
   BoundedVector scale() const {  // D (n)

@@ -71,6 +71,7 @@ FuzzyNetwork::FuzzyNetwork(Parameters parameters) : parameters_(std::move(parame
   }
   constexpr Eigen::Index kBlock = kernels::kRuleBlock;
   const Eigen::Index blocks = (rules() + kBlock - 1) / kBlock;
+  blocks_ = static_cast<int>(blocks);
   inverse_widths_.setZero(kBlock, blocks * inputs());
   scaled_centres_.setConstant(kBlock, blocks * inputs(), kNeverFires);
   for (Eigen::Index j = 0; j < rules(); ++j)
@@ -93,7 +94,7 @@ bool FuzzyNetwork::standardise(const Inputs& input, double* u) const {
 }
 
 kernels::RuleBlocks FuzzyNetwork::blocks() const {
-  return {.blocks = static_cast<int>(inverse_widths_.cols()) / inputs(),
+  return {.blocks = blocks_,
           .inputs = inputs(),
           .centres = scaled_centres_.data(),
           .inverse_widths = inverse_widths_.data()};

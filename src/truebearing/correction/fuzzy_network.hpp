@@ -54,7 +54,7 @@ class FuzzyNetwork {
   /// y (p) for given strengths. No allocation.
   Outputs output(const Strengths& phi) const;
   /// Both at once, and mean (n x n): that of a symmetric matrix of each rule, the rows of `matrices` (M x n n, by
-  /// columns). To rounding what strengths() weights. No allocation.
+  /// columns), of which the lower half counts. To rounding what strengths() weights. No allocation.
   void answer(const Inputs& input, Outputs& y, int n, const double* matrices, double* mean) const;
 
   using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxOutputs, kMaxInputs>;
@@ -72,6 +72,7 @@ class FuzzyNetwork {
 
   Parameters parameters_;
   // The exponents as they are evaluated, -((u - c) / (sqrt(2) s))^2: column b d + i is input i of block b.
+  int blocks_ = 0;
   Blocks scaled_centres_;               // c / (sqrt(2) s)
   Blocks inverse_widths_;               // 1 / (sqrt(2) s)
   Eigen::MatrixXd scaled_consequents_;  // (M x p), in the units of the outputs

@@ -152,11 +152,8 @@ template <int kWidth>
 template <int kWidth>
 [[gnu::always_inline]] inline void means(const RuleTables& said, const double* phi, double scale, double* numbers,
                                          double* matrix) {
-  const int n = said.n;
   means_of<kWidth>(said.rules, said.columns, phi, said.numbers, scale, numbers);
-  means_of<kWidth>(said.rules, n * n, phi, said.matrices, scale, matrix);
-  for (int j = 1; j < n; ++j)
-    for (int i = 0; i < j; ++i) matrix[i + n * j] = matrix[j + n * i];
+  means_of<kWidth>(said.rules, said.n * said.n, phi, said.matrices, scale, matrix);
 }
 
 template <int kWidth>

@@ -30,7 +30,8 @@ struct RuleTables {
 /// phi (kRuleBlock blocks): exp(-|u / (sqrt(2) s) - c / (sqrt(2) s)|^2) of every rule over their sum, for inputs u.
 void rule_strengths(const RuleBlocks& rules, const double* u, double* phi);
 
-/// The means of what the rules say, weighted by strengths phi (rules): numbers (columns) and a matrix (n x n).
+/// The means of what the rules say, weighted by strengths phi (rules): numbers (columns) and a matrix (n x n), whose
+/// lower half counts.
 void rule_means(const RuleTables& said, const double* phi, double* numbers, double* matrix);
 
 /// The same for inputs u, in one go: for a sum of 1 the strengths need not be divided by it one by one.

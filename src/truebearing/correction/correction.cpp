@@ -10,6 +10,7 @@
 #include "truebearing/core/error.hpp"
 #include "truebearing/core/unfilled.hpp"
 #include "truebearing/correction/limit_kappa.hpp"
+#include "truebearing/correction/plane_covariance_kernel.hpp"
 
 namespace truebearing {
 namespace {
@@ -66,12 +67,18 @@ void begin_record(const StepRecord& step, StepRecord& corrected) {
   corrected.correction.emplace(Unfilled());
 }
 
+// States of the plane, which most corrections are of, have kernels of their own: the same numbers in SIMD instructions.
+template <typename Vector>
+inline constexpr bool kIsOfPlane = Vector::SizeAtCompileTime == 4;
+
+constexpr double kLeastShare = 1e-9;  // of its variance that a pivot is, where a covariance is far from singular
+constexpr double kLargest = 1e100;    // whose square is a number
+
 // True where P (lower half) is a covariance. One that is far from singular is seen at once: every pivot is a good part
 // of its variance.
 template <typename Matrix>
 bool is_covariance_of_state(const Matrix& P) {
-  constexpr double kLeastShare = 1e-9, kLargest = 1e100;  // whose squares are numbers
-  Matrix W = P;
+  typename Matrix::PlainObject W = P;
   const Eigen::Index n = P.rows();
   bool definite = true;
 #pragma GCC unroll 8
@@ -89,6 +96,28 @@ bool is_covariance_of_state(const Matrix& P) {
   return definite || is_covariance(P);
 }
 
+// The correction's own covariance P_c, of that of its source.
+template <typename Matrix>
+void own_covariance(const OutputUnits& units, const NetworkAnswer& answer, const BoundedMatrix& P_source, Matrix& P_c) {
+  constexpr int kStates = Matrix::RowsAtCompileTime;
+  if constexpr (kIsOfPlane<StateVector<kStates>>)
+    if (answer.moments.size() > 0)
+      return kernels::plane_own_covariance(P_source.data(), answer.moments.data(), units.rotation().axis(), P_c.data());
+  P_c = of_size<kStates>(P_source);
+  units.own_covariance(answer, P_c);
+}
+
+template <typename Vector, typename Matrix>
+double disagreement_of(const Vector& d, const Matrix& P_c, const BoundedMatrix& P_reference) {
+  if constexpr (kIsOfPlane<Vector>) {
+    double squared = 0.0;
+    kernels::plane_squared_distance(P_c.data(), P_reference.data(), d.data(), squared);
+    return std::sqrt(squared);
+  } else {
+    return disagreement(d, P_c, of_size<Vector::SizeAtCompileTime>(P_reference));
+  }
+}
+
 // What the weights g of what a correction says make of the covariances: a and b are the roots of g_i g_j and (1 - g_i)
 // (1 - g_j), of positions (0) and velocities (1).
 struct Blend {
@@ -97,11 +126,13 @@ struct Blend {
 
   Blend(double position, double velocity) {
     const double g[2] = {position, velocity};
-    for (int i = 0; i < 2; ++i)
-      for (int j = 0; j < 2; ++j) {
-        a[i][j] = g[i] == g[j] ? g[i] : std::sqrt(g[i] * g[j]);
-        b[i][j] = g[i] == g[j] ? 1.0 - g[i] : std::sqrt((1.0 - g[i]) * (1.0 - g[j]));
-      }
+    for (int i = 0; i < 2; ++i) {
+      a[i][i] = g[i];
+      b[i][i] = 1.0 - g[i];
+    }
+    const bool same = position == velocity;
+    a[0][1] = a[1][0] = same ? position : std::sqrt(position * velocity);
+    b[0][1] = b[1][0] = same ? 1.0 - position : std::sqrt((1.0 - position) * (1.0 - velocity));
   }
 
   // Written as a change of P_reference: nothing to correct leaves the covariance as it is, to the bit. Lower halves are
@@ -110,6 +141,12 @@ struct Blend {
   bool covariance(const SomeMatrix& P_c, const OtherMatrix& P_reference, const Vector& d, Matrix& P) const {
     const Eigen::Index n = d.size(), positions = n / 2;
     P.resize(n, n);
+    if constexpr (kIsOfPlane<Vector>) {
+      bool definite = false;
+      kernels::plane_blend(P_c.data(), P_reference.data(), d.data(), a[0], b[0], kLeastShare, kLargest, P.data(),
+                           definite);
+      return definite || is_covariance(P);
+    }
 #pragma GCC unroll 8
     for (Eigen::Index j = 0; j < n; ++j)
 #pragma GCC unroll 8
@@ -265,35 +302,42 @@ bool Correction::correct_state(const CorrectionInputs::Records& step, Track& tra
 
   const OutputUnits units = inputs_.units(track.extractor, base);
   Vector wanted = of_size<N>(answer_.y);
-  Matrix P_c = of_size<N>(step.source->P);
   units.to_state(wanted);
   wanted = x_base + wanted - x_reference;
-  units.own_covariance(answer_, P_c);
+  Matrix P_c;
+  own_covariance(units, answer_, step.source->P, P_c);
 
   const auto limited = limit_kappa<N>(distance, wanted, bounds_.kappa);
   const Vector& d = limited.d;
   account.features = features_;
   account.intervals = track.extractor.intervals();
-  account.disagreement = gate_ ? disagreement(wanted, P_c, P_reference) : 0.0;
+  account.disagreement = gate_ ? disagreement_of(wanted, P_c, reference.P) : 0.0;
   account.box = gate_ ? gate_->weight(features_, account.intervals, account.disagreement) : 1.0;
   account.wanted_sigmas = limited.wanted_sigmas;
   const ComponentWeights G(account.box, account.referee);
 
   // Where its parts have weights of their own, a correction may become longer than it was.
   const bool apart = G.position != G.velocity;
-  const Vector weighted = apart ? limit_kappa<N>(distance, G.times(d), bounds_.kappa).d : Vector(G.position * d);
-  const Vector x = within_kappa<N>(x_reference, distance, weighted, bounds_.kappa);
+  LimitedVector<Vector> weighted;
+  if (apart) {
+    weighted = limit_kappa<N>(distance, G.times(d), bounds_.kappa);
+    if (weighted.limited || bounds_.kappa == kInfinity) weighted.distance_sigmas = distance.of<N>(weighted.d);
+  } else {
+    weighted.d = G.position * d;
+    weighted.distance_sigmas = G.position * limited.distance_sigmas;
+  }
+  const Vector x = within_kappa<N>(x_reference, distance, weighted.d, bounds_.kappa);
   if (bounds_.referee && used) track.referee.remember(base, x_reference + d, reference, x);
 
-  Matrix P;
+  corrected.P.resize(x.size(), x.size());
+  Eigen::Map<Matrix> P(corrected.P.data(), x.size(), x.size());
   const bool valid = Blend(G.position, G.velocity).covariance(P_c, P_reference, d, P);
   if (!x.allFinite() || !valid) return false;
   store(x, corrected.x);
-  store(P, corrected.P);
   CorrectionOutcome& outcome = *corrected.correction;
   outcome.gate = G.mean(x.size());
   outcome.limited = limited.limited;
-  outcome.distance_sigmas = apart ? distance.of<N>(weighted) : G.position * limited.distance_sigmas;
+  outcome.distance_sigmas = weighted.distance_sigmas;
   return true;
 }
 

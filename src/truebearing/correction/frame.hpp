@@ -146,6 +146,10 @@ class FrameRotation {
   const Eigen::Vector2d& along() const {
     return along_;
   }
+  /// along(), or nullptr where the frame is the state's own.
+  const double* axis() const {
+    return rotates_ ? along_.data() : nullptr;
+  }
 
  private:
   // Of a vector of the plane (2 or 4 components) or of space (3 or 6).

@@ -53,9 +53,10 @@ class SafeDistance {
   /// To a relative error of 1e-9; infinity where d is not finite, or P not so far from singular that this can be
   /// promised.
   double of(const BoundedVector& d) const { return of<0>(d); }
-  /// Where it is known that there are N > 0 components.
+  /// Where it is known that there are N > 0 components. Called, not inlined: a step asks several times, and is longer
+  /// than the cache of instructions.
   template <int N, typename Vector>
-  double of(const Vector& d) const {
+  [[gnu::noinline]] double of(const Vector& d) const {
     if (quick_.condition <= kForDouble) {
       const double squared = detail::squared_length<N>(quick_, static_cast<std::size_t>(d.size()), d.data());
       if (std::isfinite(squared)) return std::sqrt(squared);

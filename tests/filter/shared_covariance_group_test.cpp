@@ -10,7 +10,7 @@
 
 #include "truebearing/core/constants.hpp"
 #include "truebearing/core/random.hpp"
-#include "truebearing/core/simd_lanes.hpp"
+#include "truebearing/core/simd_width.hpp"
 #include "truebearing/filter/filter_kinds.hpp"
 #include "truebearing/measurement/cartesian_position.hpp"
 #include "truebearing/measurement/range_bearing.hpp"
@@ -86,7 +86,7 @@ struct Both {
       EXPECT_LE((x_a - x_b).norm(), kExact * x_b.norm()) << "member " << i;
       EXPECT_LE((P_a - P_b).norm(), kExact * P_b.norm()) << "member " << i;
     }
-    std::vector<double> weights(static_cast<std::size_t>(padded_to_lanes(static_cast<int>(shared->size()))));
+    std::vector<double> weights(static_cast<std::size_t>(padded_to_widest(static_cast<int>(shared->size()))));
     double sum = 0.0;
     for (std::size_t i = 0; i < shared->size(); ++i) sum += weights[i] = static_cast<double>(i % 3);
     shared->mix(weights, sum, x_a, P_a);

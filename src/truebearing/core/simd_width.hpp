@@ -28,6 +28,34 @@ struct VectorOf {
   }
 };
 
+/// A sum of numbers that are added kCount at a time, in one order whatever kCount is: first those that stand eight apart,
+/// then those of eight that stand four apart.
+template <int kCount>
+class TotalOf {
+  using Doubles = typename VectorOf<kCount>::Doubles;
+  static constexpr int kParts = 8 / kCount;
+
+ public:
+  [[gnu::always_inline]] TotalOf() {
+    for (Doubles& part : parts_) part = Doubles{};
+  }
+  /// Those that begin at place `first`.
+  [[gnu::always_inline]] void add(int first, const Doubles& value) { parts_[first / kCount % kParts] += value; }
+  [[gnu::always_inline]] double sum() const {
+    typename VectorOf<4>::Doubles four;
+    if constexpr (kCount == 4) {
+      four = parts_[0] + parts_[1];
+    } else {
+      const Doubles& all = parts_[0];
+      four = __builtin_shufflevector(all, all, 0, 1, 2, 3) + __builtin_shufflevector(all, all, 4, 5, 6, 7);
+    }
+    return (four[0] + four[2]) + (four[1] + four[3]);
+  }
+
+ private:
+  Doubles parts_[static_cast<unsigned>(kParts)];
+};
+
 /// The least multiple of the widest register's doubles that holds so many: what is padded to it can be loaded without a
 /// rest on any processor.
 constexpr int padded_to_widest(int count) {

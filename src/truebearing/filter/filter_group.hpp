@@ -40,7 +40,7 @@ class FilterGroup {
   /// the power of 2 pi that all share, and minus infinity where it failed.
   virtual void update(std::span<const AnyMeasurement* const> measurements, std::span<double> gained) = 0;
   /// x = sum w_i x_i / sum w, P = sum w_i / sum w (P_i + (x_i - x)(x_i - x)'), over the members with a weight. The list
-  /// of weights is padded with zeros to a multiple of kLanes (core/simd_lanes.hpp).
+  /// of weights is padded with zeros (padded_to_widest() of core/simd_width.hpp).
   virtual void mix(std::span<const double> weights, double sum, BoundedVector& x, BoundedMatrix& P) const = 0;
   /// x (n) and P (n x n) of member i.
   virtual void estimate(std::size_t i, BoundedVector& x, BoundedMatrix& P) const = 0;

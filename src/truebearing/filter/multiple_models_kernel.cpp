@@ -9,7 +9,7 @@
 namespace truebearing::kernels {
 namespace {
 
-// One number of each of r >= 2 modes of kWidth models, and their sum, in the order of Registers::Total.
+// One number of each of r >= 2 modes of kWidth models, and their sum, in the order of TotalOf.
 template <int kWidth>
 struct OfModes {
   using Doubles = typename Registers<kWidth>::Doubles;

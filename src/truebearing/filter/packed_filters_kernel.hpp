@@ -55,6 +55,8 @@ struct TransitionBlock {
   FilterMatrices<N, N> Q;
 };
 
+inline constexpr double kLogTwoPi = 1.8378770664093454836;  // of each component in a log likelihood
+
 /// What an update is told and what it leaves.
 template <int N>
 struct UpdateBlock {

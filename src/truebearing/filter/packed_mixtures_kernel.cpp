@@ -57,10 +57,6 @@ struct Mixing {
       if (count <= 4) return to_one_loops<4>(modes, count, weights, x, P);
     List<typename Some::Total, N> means;
     Table<typename Some::Total, N, N> squares;
-    for (int i = 0; i < N; ++i) {
-      means[i].begin();
-      for (int j = 0; j <= i; ++j) squares[i][j].begin();
-    }
     for (int first = 0; first < count; first += kWidth) {
       Doubles weight, value;
       Some::load(weights[first / kBlock], first, weight);
@@ -104,10 +100,6 @@ struct Combining {
       if (count <= 4) return innovations_loops<4>(updates, count, weights, nu, S);
     List<typename Some::Total, M> means;
     Table<typename Some::Total, M, M> squares;
-    for (int m = 0; m < M; ++m) {
-      means[m].begin();
-      for (int l = 0; l <= m; ++l) squares[m][l].begin();
-    }
     for (int first = 0; first < count; first += kWidth) {
       Doubles weight, value;
       Some::load(weights[first / kBlock], first, weight);
@@ -147,8 +139,6 @@ struct Combining {
     if constexpr (kWidth > 4)
       if (count <= 4) return gains_loops<4>(updates, count, weights, K);
     Table<typename Some::Total, N, M> totals;
-    for (int i = 0; i < N; ++i)
-      for (int m = 0; m < M; ++m) totals[i][m].begin();
     for (int first = 0; first < count; first += kWidth) {
       Doubles weight, value;
       Some::load(weights[first / kBlock], first, weight);

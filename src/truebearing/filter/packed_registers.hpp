@@ -22,6 +22,7 @@ struct Registers {
   using Vector = VectorOf<kWidth>;
   using Doubles = typename Vector::Doubles;
   using Bits = typename Vector::Bits;
+  using Total = TotalOf<kWidth>;  // of all filters
 
   [[gnu::always_inline]] static void load(const OfFilters& from, int first, Doubles& to) {
     Vector::load(from.lane + first % kBlock, to);
@@ -111,28 +112,6 @@ struct Registers {
     is_plainly_positive_definite<N>(A, least, verdict);
     verdict.store(first, good);
   }
-
-  // Of all filters, in one order whatever the width: first those of a block that stand four apart.
-  struct Total {
-    List<Doubles, kBlock / kWidth> parts;
-
-    [[gnu::always_inline]] void begin() {
-      for (Doubles& part : parts) part = Doubles{};
-    }
-    [[gnu::always_inline]] void add(int first, const Doubles& value) {
-      parts[first / kWidth % (kBlock / kWidth)] += value;
-    }
-    [[gnu::always_inline]] double sum() const {
-      typename VectorOf<4>::Doubles four;
-      if constexpr (kWidth == 4) {
-        four = parts[0] + parts[1];
-      } else {
-        const Doubles& all = parts[0];
-        four = __builtin_shufflevector(all, all, 0, 1, 2, 3) + __builtin_shufflevector(all, all, 4, 5, 6, 7);
-      }
-      return truebearing::sum(four);
-    }
-  };
 };
 
 }  // namespace truebearing::kernels

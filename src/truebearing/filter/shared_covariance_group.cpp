@@ -6,10 +6,11 @@
 #include <utility>
 
 #include "truebearing/core/constants.hpp"
-#include "truebearing/core/simd_lanes.hpp"
+#include "truebearing/core/simd_width.hpp"
 #include "truebearing/core/with_count.hpp"
 #include "truebearing/filter/factorization.hpp"
 #include "truebearing/filter/kalman.hpp"
+#include "truebearing/filter/packed_filters_kernel.hpp"
 #include "truebearing/filter/shared_covariance_kernel.hpp"
 
 namespace truebearing {
@@ -26,13 +27,12 @@ class SharedCovarianceGroup final : public FilterGroup {
   SharedCovarianceGroup(Motions motions, std::vector<Member> members)
       : motions_(std::move(motions)),
         members_(std::move(members)),
-        stride_(static_cast<std::size_t>(padded_to_lanes(static_cast<int>(members_.size())))),
+        stride_(static_cast<std::size_t>(padded_to_widest(static_cast<int>(members_.size())))),
         x_(N * stride_),
         transitions_(motions_.size()) {
     families_.reserve(members_.size());
     for (std::size_t i = 0; i < members_.size(); ++i) {
-      if (i == 0 || members_[i] != members_[i - 1])
-        families_.push_back({i, i, KalmanFilter<N>(State::Zero(), Covariance::Identity())});
+      if (i == 0 || members_[i] != members_[i - 1]) families_.push_back({i, i, Covariance::Identity()});
       ++families_.back().end;
     }
   }
@@ -41,61 +41,94 @@ class SharedCovarianceGroup final : public FilterGroup {
   std::size_t size() const override { return members_.size(); }
 
   bool begin(std::size_t i, const double* x, const double* P) override {
+    unpack();
+    has_transitions_ = false;
     const State own = matrix_at<N, 1>(x);
-    const KalmanFilter<N> filter(State::Zero(), matrix_at<N, N>(P));
+    const Covariance P0 = KalmanFilter<N>(State::Zero(), matrix_at<N, N>(P)).P();
     for (int k = 0; k < N; ++k) at(k, i) = own[k];
-    join_before(set_apart(i, filter));
-    return is_finite(own) && is_finite(filter.P());
+    join_before(set_apart(i, P0));
+    return is_finite(own) && is_finite(P0);
   }
 
   bool predict(double dt_s) override {
-    if (dt_s != transition_dt_s_)
+    if (dt_s != transition_dt_s_) {
       for (std::size_t m = 0; m < motions_.size(); ++m)
         transitions_[m] = {motions_[m]->F(State::Zero(), dt_s), motions_[m]->Q(dt_s)};
-    transition_dt_s_ = dt_s;
-    bool valid = true;
-    for (Family& family : families_) {
-      const GivenTransition<N>& transition = transitions_[members_[family.first].motion];
-      valid &= family.filter.predict(transition, dt_s) != StepStatus::failed;
-      kernels::move_means<N>(transition.F_dt.data(), x_.data() + family.first, family.size(), stride_);
+      has_transitions_ = false;
+      transition_dt_s_ = dt_s;
     }
+    pack();
+    if (!has_transitions_) pack_transitions();
+    kernels::predict_filters<N>(packed_transitions_.data(), count(), packed_.data(), next_.data(), good_.data());
+    bool valid = true;
+    for (std::size_t f = 0; f < families_.size(); ++f) {
+      const Family& family = families_[f];
+      if (!is_good(f)) {  // stays as it was
+        put(P_of(f), f, next_);
+        valid = false;
+      }
+      kernels::move_means<N>(transitions_[members_[family.first].motion].F_dt.data(), x_.data() + family.first,
+                             family.size(), stride_);
+    }
+    packed_.swap(next_);
     return valid && kernels::all_finite(x_.data(), x_.size());
   }
 
   void update(std::span<const AnyMeasurement* const> measurements, std::span<double> gained) override {
-    for (Family& family : families_) {
-      const AnyMeasurement& taken = *measurements[members_[family.first].sensor];
+    pack();
+    // Of filters at the origin, which measure that: whether P, S and K are good for all of a family shows there.
+    for (std::size_t f = 0; f < families_.size(); ++f) {
+      const SizedMeasurement<M>* position = position_of(families_[f], measurements);
+      if (!position) continue;
+      kernels::UpdateBlock<N>& update = block_of(updates_, f);
+      for (int m = 0; m < M; ++m) {
+        update.nu[m][lane_of(f)] = 0.0;
+        for (int l = 0; l < M; ++l) update.R[m][l][lane_of(f)] = position->R(m, l);
+      }
+    }
+    kernels::update_filters<N, M, true>(count(), packed_.data(), updates_.data(), next_.data(), good_.data());
+    for (std::size_t f = 0; f < families_.size(); ++f) {
+      const Family& family = families_[f];
       double* of_family = gained.data() + family.first;
       std::fill_n(of_family, family.size(), -kInfinity);
-      if (!taken.is_position() || taken.size() != M) continue;
-      const auto& position = static_cast<const SizedMeasurement<M>&>(taken);
-      // Of a filter at the origin, which measures that: its status says whether P, S and K are good for all.
-      const Update<N, M> common =
-          family.filter.update(detail::MeasuredPosition<N, M>{position.R}, Eigen::Matrix<double, M, 1>::Zero().eval());
-      if (common.status != StepStatus::ok) continue;
-      const Ldlt<M, double> factors(common.S, Eigen::Matrix<double, M, 1>::Zero());
-      kernels::take_position<N, M>(position.z.data(), common.K.data(), factors.L.data(), factors.inverse_D.data(),
-                                   log_determinant(common.S), x_.data() + family.first, family.size(), stride_,
-                                   of_family);
+      const SizedMeasurement<M>* position = position_of(family, measurements);
+      const kernels::UpdateBlock<N>& update = block_of(updates_, f);
+      const int lane = lane_of(f);
+      if (!position || !is_positive_semidefinite<M, double>(position->R) || !update.has_gain[lane] || !is_good(f)) {
+        put(P_of(f), f, next_);
+        continue;
+      }
+      Eigen::Matrix<double, N, M> K;
+      Eigen::Matrix<double, M, M> S;
+      for (int m = 0; m < M; ++m) {
+        for (int i = 0; i < N; ++i) K(i, m) = update.K[i][m][lane];
+        for (int l = 0; l < M; ++l) S(l, m) = update.S[l][m][lane];
+      }
+      const Ldlt<M, double> factors(S, Eigen::Matrix<double, M, 1>::Zero());
+      kernels::take_position<N, M>(position->z.data(), K.data(), factors.L.data(), factors.inverse_D.data(),
+                                   -2.0 * update.log_likelihood[lane] - M * kernels::kLogTwoPi,
+                                   x_.data() + family.first, family.size(), stride_, of_family);
     }
+    packed_.swap(next_);
   }
 
   void mix(std::span<const double> weights, double sum, BoundedVector& x, BoundedMatrix& P) const override {
     x.resize(N);
     P.resize(N, N);
     kernels::mix_means<N>(weights.data(), sum, x_.data(), stride_, x.data(), P.data());
-    for (const Family& family : families_) {
-      const double weight = kernels::sum_of(weights.data() + family.first, family.size()) / sum;
+    for (std::size_t f = 0; f < families_.size(); ++f) {
+      const double weight = kernels::sum_of(weights.data() + families_[f].first, families_[f].size()) / sum;
       if (weight == 0.0) continue;
+      const Covariance of_family = P_of(f);
       for (int col = 0; col < N; ++col)
-        for (int row = 0; row < N; ++row) P(row, col) += weight * family.filter.P()(row, col);
+        for (int row = 0; row < N; ++row) P(row, col) += weight * of_family(row, col);
     }
   }
 
   void estimate(std::size_t i, BoundedVector& x, BoundedMatrix& P) const override {
     x.resize(N);
     for (int k = 0; k < N; ++k) x[k] = x_[static_cast<std::size_t>(k) * stride_ + i];
-    P = families_[family_of(i)].filter.P();
+    P = P_of(family_of(i));
   }
   std::unique_ptr<TrackedState> state_of(std::size_t i) const override {
     return std::make_unique<FilterState<KalmanFilter<N>>>(motions_[members_[i].motion]);
@@ -103,8 +136,15 @@ class SharedCovarianceGroup final : public FilterGroup {
 
   void assign(const FilterGroup& other) override {
     const auto& same = static_cast<const SharedCovarianceGroup&>(other);
-    families_ = same.families_;
+    const auto is_one = [](const Family& a, const Family& b) { return a.first == b.first && a.end == b.end; };
+    has_transitions_ &=
+        std::equal(families_.begin(), families_.end(), same.families_.begin(), same.families_.end(), is_one);
     x_ = same.x_;
+    families_ = same.families_;
+    is_packed_ = same.is_packed_;
+    if (!is_packed_) return;
+    packed_ = same.packed_;
+    resize_packed();
   }
   std::unique_ptr<FilterGroup> fresh() const override {
     return std::make_unique<SharedCovarianceGroup>(motions_, members_);
@@ -114,12 +154,88 @@ class SharedCovarianceGroup final : public FilterGroup {
   /// Members [first, end), and the P of each.
   struct Family {
     std::size_t first, end;
-    KalmanFilter<N> filter;  // at the origin
+    Covariance P;  // while it is not packed
 
     std::size_t size() const { return end - first; }
   };
 
   double& at(int k, std::size_t i) { return x_[static_cast<std::size_t>(k) * stride_ + i]; }
+
+  // The families' filters, each in a lane, at the origin: F, Q, S, K and P are all that is of interest.
+  using Blocks = std::vector<kernels::FilterBlock<N>>;
+
+  int count() const { return static_cast<int>(families_.size()); }
+  static int lane_of(std::size_t family) { return static_cast<int>(family) % kernels::kBlock; }
+  template <typename Block>
+  static Block& block_of(std::vector<Block>& blocks, std::size_t family) {
+    return blocks[family / kernels::kBlock];
+  }
+
+  void resize_packed() {
+    const auto blocks = static_cast<std::size_t>(kernels::blocks_of(count()));
+    if (next_.size() == blocks && packed_.size() == blocks) return;
+    packed_.resize(blocks);
+    next_.resize(blocks);
+    packed_transitions_.resize(blocks);
+    updates_.resize(blocks);
+    good_.resize(blocks);
+    has_transitions_ = false;
+  }
+
+  void pack() {
+    if (is_packed_) return;
+    resize_packed();
+    for (std::size_t f = 0; f < families_.size(); ++f) put(families_[f].P, f, packed_);
+    is_packed_ = true;
+  }
+  void unpack() {
+    for (std::size_t f = 0; is_packed_ && f < families_.size(); ++f) families_[f].P = P_of(f);
+    is_packed_ = false;
+  }
+  void pack_transitions() {
+    for (std::size_t f = 0; f < families_.size(); ++f) {
+      const GivenTransition<N>& of_motion = transitions_[members_[families_[f].first].motion];
+      kernels::TransitionBlock<N>& block = block_of(packed_transitions_, f);
+      for (int i = 0; i < N; ++i)
+        for (int j = 0; j < N; ++j) {
+          block.F[i][j][lane_of(f)] = of_motion.F_dt(i, j);
+          block.Q[i][j][lane_of(f)] = of_motion.Q_dt(i, j);
+        }
+    }
+    has_transitions_ = true;
+  }
+
+  static void put(const Covariance& P, std::size_t family, Blocks& blocks) {
+    kernels::FilterBlock<N>& block = block_of(blocks, family);
+    for (int i = 0; i < N; ++i) {
+      block.x[i][lane_of(family)] = 0.0;
+      for (int j = 0; j < N; ++j) block.P[i][j][lane_of(family)] = P(i, j);
+    }
+  }
+  static Covariance packed_P(const Blocks& blocks, std::size_t family) {
+    Covariance P;
+    for (int i = 0; i < N; ++i)
+      for (int j = 0; j < N; ++j) P(i, j) = blocks[family / kernels::kBlock].P[i][j][lane_of(family)];
+    return P;
+  }
+  Covariance P_of(std::size_t family) const { return is_packed_ ? packed_P(packed_, family) : families_[family].P; }
+
+  // Of next_: plainly positive definite, or at a second look positive semi-definite, and still at the origin.
+  bool is_good(std::size_t family) const {
+    const int lane = lane_of(family);
+    if (good_[family / kernels::kBlock][lane]) [[likely]]
+      return true;
+    for (const kernels::OfFilters& x : next_[family / kernels::kBlock].x)
+      if (x[lane] != 0.0) return false;
+    return is_positive_semidefinite<N, double>(packed_P(next_, family));
+  }
+
+  // What a family measures; nothing where it is no position.
+  const SizedMeasurement<M>* position_of(const Family& family,
+                                         std::span<const AnyMeasurement* const> measurements) const {
+    const AnyMeasurement& taken = *measurements[members_[family.first].sensor];
+    return taken.is_position() && taken.size() == M ? static_cast<const SizedMeasurement<M>*>(&taken) : nullptr;
+  }
 
   std::size_t family_of(std::size_t i) const {
     const auto behind = std::upper_bound(families_.begin(), families_.end(), i,
@@ -128,12 +244,12 @@ class SharedCovarianceGroup final : public FilterGroup {
   }
 
   // Member i leaves its family for one of its own, whose place it gives.
-  std::size_t set_apart(std::size_t i, const KalmanFilter<N>& filter) {
+  std::size_t set_apart(std::size_t i, const Covariance& P) {
     auto own = families_.begin() + static_cast<std::ptrdiff_t>(family_of(i));
     const Family whole = *own;
-    *own = {i, i + 1, filter};
-    if (i + 1 < whole.end) own = families_.insert(own + 1, {i + 1, whole.end, whole.filter}) - 1;
-    if (whole.first < i) own = families_.insert(own, {whole.first, i, whole.filter}) + 1;
+    *own = {i, i + 1, P};
+    if (i + 1 < whole.end) own = families_.insert(own + 1, {i + 1, whole.end, whole.P}) - 1;
+    if (whole.first < i) own = families_.insert(own, {whole.first, i, whole.P}) + 1;
     return static_cast<std::size_t>(own - families_.begin());
   }
 
@@ -142,7 +258,7 @@ class SharedCovarianceGroup final : public FilterGroup {
     if (place == 0) return;
     const Family& own = families_[place];
     Family& before = families_[place - 1];
-    if (members_[before.first] != members_[own.first] || before.filter.P() != own.filter.P()) return;
+    if (members_[before.first] != members_[own.first] || before.P != own.P) return;
     before.end = own.end;
     families_.erase(families_.begin() + static_cast<std::ptrdiff_t>(place));
   }
@@ -151,9 +267,15 @@ class SharedCovarianceGroup final : public FilterGroup {
   std::vector<Member> members_;
   std::vector<Family> families_;
   std::size_t stride_;
-  std::vector<double> x_;  // (n x stride) by rows
-  std::vector<GivenTransition<N>> transitions_;
+  std::vector<double> x_;                        // (n x stride) by rows
+  std::vector<GivenTransition<N>> transitions_;  // of the motions
   double transition_dt_s_ = kNaN;
+  bool is_packed_ = false;  // the families' P stand in packed_
+  Blocks packed_, next_;
+  bool has_transitions_ = false;  // the lanes', of these families over that time
+  std::vector<kernels::TransitionBlock<N>> packed_transitions_;
+  std::vector<kernels::UpdateBlock<N>> updates_;
+  std::vector<kernels::FilterMask> good_;  // of next_
 };
 
 }  // namespace

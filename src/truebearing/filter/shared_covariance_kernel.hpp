@@ -17,7 +17,7 @@ template <int N, int M>
 void take_position(const double* z, const double* K, const double* L, const double* inverse_D, double log_determinant,
                    double* x, std::size_t count, std::size_t stride, double* gained);
 
-/// Are all of them finite? So many that kLanes (core/simd_lanes.hpp) divides it.
+/// Are all of them finite? So many that whole registers hold them (padded_to_widest(), core/simd_width.hpp).
 bool all_finite(const double* values, std::size_t padded);
 
 double sum_of(const double* values, std::size_t count);

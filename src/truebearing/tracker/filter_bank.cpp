@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "truebearing/core/constants.hpp"
-#include "truebearing/core/simd_lanes.hpp"
+#include "truebearing/core/simd_width.hpp"
 #include "truebearing/tracker/filter_bank_kernel.hpp"
 #include "truebearing/tracker/publishable.hpp"
 
@@ -28,7 +28,7 @@ FilterBank::FilterBank(const StateSpace& space, std::unique_ptr<FilterGroup> gro
       hypotheses_(std::move(hypotheses)),
       suppose_(std::move(suppose)),
       taken_(sensors_.size()),
-      gained_(static_cast<std::size_t>(padded_to_lanes(static_cast<int>(hypotheses_.size())))),
+      gained_(static_cast<std::size_t>(padded_to_widest(static_cast<int>(hypotheses_.size())))),
       weights_(gained_.size()) {
   if (hypotheses_.empty() || !group || group->size() != hypotheses_.size() || space.size() > group->states())
     throw std::invalid_argument("a bank has a filter for each hypothesis, of states as long as its space");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The weights of FilterBank, many side by side. Lists are padded to a multiple of kLanes (core/simd_lanes.hpp), of
+// The weights of FilterBank, many side by side. Lists are padded to whole registers (padded_to_widest()), of
 // logarithms of weights with minus infinity.
 #pragma once
 

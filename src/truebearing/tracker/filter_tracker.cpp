@@ -35,13 +35,6 @@ bool is_sensible(const double* x, const double* P, int positions) {
   return sensible;
 }
 
-// As wide as lets a measurement pass: P times `factor`.
-void widen(TrackedState& state, double factor) {
-  const BoundedVector x = state.x();
-  const BoundedMatrix P = factor * state.P();
-  state.begin(x.data(), P.data());
-}
-
 }  // namespace
 
 FilterTracker::FilterTracker(const StateSpace& space, std::unique_ptr<TrackedState> state,
@@ -211,6 +204,13 @@ void FilterTracker::forget_challenger() {
   agreeing_ = 0;
 }
 
+// As wide as lets a measurement pass: P times `factor`.
+void FilterTracker::widen(TrackedState& state, double factor) {
+  const BoundedVector x = state.x();
+  const BoundedMatrix P = factor * state.P();
+  state.begin(x.data(), P.data());
+}
+
 StepStatus FilterTracker::cross(double dt_s, TrackedState& state) const {
   return dt_s > 0.0 ? state.predict(std::min(dt_s, options_.lost_after_s)) : StepStatus::ok;
 }
@@ -286,35 +286,6 @@ StepStatus FilterTracker::update(const Measurement& measurement) {
 // A sensor that goes wrong opens no gate but its own.
 Gate& FilterTracker::gate_of(const Measurement& measurement) {
   return gates_.size() == 1 ? gates_.front() : gates_[static_cast<std::size_t>(measurement.source)];
-}
-
-// Measurements that the gate turns away one after another, and that agree with each other, are the target: then it was
-// the track that was wrong. True where a start of their own takes over.
-bool FilterTracker::challenge(const Measurement& measurement, double nis) {
-  constexpr int kAgreeing = 3;
-  const int first = std::holds_alternative<TwoPointStart>(start_) ? 2 : 1;  // agreeing ones that make a challenger
-  StateUpdate update;
-  const auto challenger_takes = [&] {
-    const Prediction expected{challenger_->x(), challenger_->P()};
-    return challenger_->update(sensor_->take(measurement, expected), update) == StepStatus::ok;
-  };
-  if (agreeing_ >= first && cross(measurement.time_s - challenger_time_s_, *challenger_) == StepStatus::ok &&
-      challenger_takes() && update.nis <= gate_of(measurement).threshold()) {
-    ++agreeing_;
-  } else if (const std::optional<PriorStart> start = start_at(turned_away_, measurement)) {
-    challenger_->begin(start->x.data(), start->P.data());
-    agreeing_ = first;
-  } else if (first == 1) {
-    // Measurements begin no track: what was predicted, with the covariance that lets this one pass.
-    challenger_->assign(*state_);
-    widen(*challenger_, nis / gate_of(measurement).threshold());
-    agreeing_ = challenger_takes() ? 1 : 0;
-  } else {
-    agreeing_ = 1;  // the first of two points
-  }
-  challenger_time_s_ = measurement.time_s;
-  turned_away_ = measurement;
-  return agreeing_ >= kAgreeing;
 }
 
 // What came out is no track any more: the last one that was stands in the record.

@@ -89,6 +89,7 @@ class FilterTracker : public Successor {
   void add_motion(double dt_s, PriorStart& start);
   Gate& gate_of(const Measurement& measurement);
   bool challenge(const Measurement& measurement, double nis);
+  static void widen(TrackedState& state, double factor);
   std::span<const StepRecord> give_up();
   StepStatus cross(double dt_s, TrackedState& state) const;
   bool predict(double dt_s);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a FilterTracker begins a track: by the kinds of Start, from one measurement or two.
+// How a FilterTracker begins a track: by the kinds of Start, from one measurement or two; and how measurements that its
+// gate turns away begin another.
 #include <optional>
 #include <variant>
 
@@ -70,6 +71,35 @@ void FilterTracker::add_motion(double dt_s, PriorStart& start) {
   const BoundedMatrix Q = challenger_->P();
   start.P.block(d, d, d, d) +=
       Q.block(d, d, d, d) - (Q.block(0, d, d, d) + Q.block(d, 0, d, d)) / dt_s + Q.block(0, 0, d, d) / (dt_s * dt_s);
+}
+
+// Measurements that the gate turns away one after another, and that agree with each other, are the target: then it was
+// the track that was wrong. True where a start of their own takes over.
+bool FilterTracker::challenge(const Measurement& measurement, double nis) {
+  constexpr int kAgreeing = 3;
+  const int first = std::holds_alternative<TwoPointStart>(start_) ? 2 : 1;  // agreeing ones that make a challenger
+  StateUpdate update;
+  const auto challenger_takes = [&] {
+    const Prediction expected{challenger_->x(), challenger_->P()};
+    return challenger_->update(sensor_->take(measurement, expected), update) == StepStatus::ok;
+  };
+  if (agreeing_ >= first && cross(measurement.time_s - challenger_time_s_, *challenger_) == StepStatus::ok &&
+      challenger_takes() && update.nis <= gate_of(measurement).threshold()) {
+    ++agreeing_;
+  } else if (const std::optional<PriorStart> start = start_at(turned_away_, measurement)) {
+    challenger_->begin(start->x.data(), start->P.data());
+    agreeing_ = first;
+  } else if (first == 1) {
+    // Measurements begin no track: what was predicted, with the covariance that lets this one pass.
+    challenger_->assign(*state_);
+    widen(*challenger_, nis / gate_of(measurement).threshold());
+    agreeing_ = challenger_takes() ? 1 : 0;
+  } else {
+    agreeing_ = 1;  // the first of two points
+  }
+  challenger_time_s_ = measurement.time_s;
+  turned_away_ = measurement;
+  return agreeing_ >= kAgreeing;
 }
 
 }  // namespace truebearing

@@ -19,6 +19,7 @@
 #include "truebearing/core/suggestion.hpp"
 #include "truebearing/correction/correction_inputs.hpp"
 #include "truebearing/evaluation/scorer.hpp"
+#include "truebearing/evaluation/step_through.hpp"
 #include "truebearing/evaluation/target_record.hpp"
 #include "truebearing/tracker/smoother.hpp"
 
@@ -215,19 +216,12 @@ class RowMakers {
   Rows rows(const Scenario& scenario, const std::vector<RunKey>& keys) {
     std::vector<Recording> recordings;
     for (const RunKey& key : keys) recordings.push_back(scenario.simulate(key));
-    std::size_t steps = 0;
+    std::vector<const Recording*> all_recordings;
     for (std::size_t i = 0; i < keys.size(); ++i) {
       makers_[i]->begin(recordings[i], keys[i]);
-      steps = std::max(steps, recordings[i].measurements.size());
+      all_recordings.push_back(&recordings[i]);
     }
-    std::vector<const Measurement*> measurements(makers_.size());
-    for (std::size_t step = 0; step < steps; ++step) {
-      for (std::size_t i = 0; i < keys.size(); ++i)
-        measurements[i] = step < recordings[i].measurements.size() ? &recordings[i].measurements[step] : nullptr;
-      ensembles_.step(measurements);
-      for (std::size_t i = 0; i < keys.size(); ++i)
-        if (measurements[i]) makers_[i]->take(step);
-    }
+    step_through(ensembles_, all_recordings, [&](std::size_t i, std::size_t step) { makers_[i]->take(step); });
     Rows all;
     for (std::size_t i = 0; i < keys.size(); ++i) {
       const Rows of_run = makers_[i]->end();
@@ -283,31 +277,38 @@ TeacherSet collect_teacher_set(const Ensemble& ensemble, const CorrectionSpec& c
                        "a truth that has every component of the state");
   }
   const std::size_t runs = correction.training.runs;
-  const std::size_t together = runs_together(runs, options.threads);
+  // All ranks have to cut the runs alike, whatever machines they are on.
+  const std::size_t wanted =
+      options.ranks ? runs_together(runs / options.ranks->size(), 1) : runs_together(runs, options.threads);
+  const std::size_t together = ensemble.gains_together() ? wanted : 1;
   std::vector<Rows> by_group((runs + together - 1) / together);
   std::vector<std::optional<RowMakers>> makers(worker_count(options.threads));
-  const auto make = [&](std::size_t group, std::size_t worker) {
+  const auto make = [&](std::size_t first, std::size_t count, std::size_t worker) {
     if (!makers[worker])
       makers[worker].emplace(together, [&] {
         return std::make_unique<RowMaker>(ensemble, correction, truth_space, truth_index, options.whole_tracks);
       });
     std::vector<RunKey> keys;
-    for (std::size_t run = group * together; run < std::min((group + 1) * together, runs); ++run)
-      keys.push_back({options.seed, options.role, run});
+    for (std::size_t run = first; run < first + count; ++run) keys.push_back({options.seed, options.role, run});
     return makers[worker]->rows(scenario, keys);
   };
-  Progress progress;
-  if (options.progress)
-    progress = [&](std::size_t done, std::size_t) { options.progress(std::min(done * together, runs), runs); };
   if (options.ranks)
     share_work(
         *options.ranks, by_group.size(), options.threads,
-        [&](std::size_t group, std::size_t worker) { return bytes_of(make(group, worker)); },
-        [&](std::size_t group, const std::string& bytes) { by_group[group] = rows_of(bytes); }, progress);
+        [&](std::size_t group, std::size_t worker) {
+          return bytes_of(make(group * together, std::min(together, runs - group * together), worker));
+        },
+        [&](std::size_t group, const std::string& bytes) { by_group[group] = rows_of(bytes); },
+        options.progress
+            ? Progress([&](std::size_t done, std::size_t) { options.progress(std::min(done * together, runs), runs); })
+            : Progress());
   else
-    monte_carlo(
-        by_group.size(), options.threads,
-        [&](std::size_t group, std::size_t worker) { by_group[group] = make(group, worker); }, progress);
+    monte_carlo_together(
+        runs, together, options.threads,
+        [&](std::size_t first, std::size_t count, std::size_t worker) {
+          by_group[first / together] = make(first, count, worker);
+        },
+        options.progress);
   if (!is_first(options.ranks)) return {};
 
   const Eigen::Index d = static_cast<Eigen::Index>(correction.design.features.size());

@@ -108,17 +108,14 @@ class TuningRuns {
     std::vector<TuningFigures> figures(recordings_.size(), TuningFigures(quantities));
     std::vector<std::unique_ptr<TrackerSetPack>> packs(worker_count(threads_));
     const BlockRange own = own_runs(ranks_, recordings_.size());
-    const std::size_t together = runs_together(own.size(), threads_);
-    monte_carlo((own.size() + together - 1) / together, threads_, [&](std::size_t group, std::size_t worker) {
+    const std::size_t together = prototype.best_together(runs_together(own.size(), threads_));
+    monte_carlo_together(own.size(), together, threads_, [&](std::size_t first, std::size_t count, std::size_t worker) {
       if (!packs[worker]) packs[worker] = std::make_unique<TrackerSetPack>(prototype, together);
-      std::vector<std::size_t> runs;
-      std::vector<const Recording*> recordings;
-      for (std::size_t i = group * together; i < std::min((group + 1) * together, own.size()); ++i) {
-        runs.push_back(own.first + i * own.stride);
-        recordings.push_back(&recordings_[runs.back()]);
-      }
-      const auto scores = score_recordings(*packs[worker], scorers, recordings, study_.scoring());
-      for (std::size_t i = 0; i < runs.size(); ++i) figures[runs[i]] = TuningFigures(scores[i].front());
+      const auto run = [&](std::size_t i) { return own.first + (first + i) * own.stride; };
+      std::vector<const Recording*> some;
+      for (std::size_t i = 0; i < count; ++i) some.push_back(&recordings_[run(i)]);
+      const auto scores = score_recordings(*packs[worker], scorers, some, study_.scoring());
+      for (std::size_t i = 0; i < count; ++i) figures[run(i)] = TuningFigures(scores[i].front());
     });
     if (ranks_) exchange(*ranks_, logarithms, figures);
     Tuned tuned{0.0, 0.0, scorers.front().dimension()};

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "tests/support/correction_models.hpp"
 #include "tests/support/error_message.hpp"
 #include "tests/support/line_trackers.hpp"
 #include "truebearing/evaluation/report.hpp"
@@ -71,6 +72,44 @@ TEST(ComparisonRuns, BlocksFromTwoProcessesGiveTheFiguresOfOneByteForByte) {
     ComparisonFigures figures(runs);
     for (std::size_t block = 0; block < blocks.size(); ++block) figures.add(block, blocks[block]);
     EXPECT_EQ(comparison_json(figures.comparison()), comparison_json(compare(set, scenarios, asked)));
+  }
+}
+
+// A corrected tracker and its details, whose runs of a block are stepped together.
+TEST(ComparisonRuns, BlocksAreThoseOfRunsStepByStepAlone) {
+  Ensemble ensemble;
+  RadarFilter radar;
+  ensemble.add("plain", radar.tracker());
+  radar.variance = {1e6, 5e4};
+  ensemble.add("wide", radar.tracker());
+  radar.sigma_m = 4000.0;
+  ensemble.add("tuned", radar.tracker());
+  TrackerSet set(std::move(ensemble));
+  for (const char* name : {"plain", "tuned"}) set.show_member(name);
+  RandomStream random({}, StreamId::test);
+  CorrectionModel model = testing::line_model(testing::radar_features(), testing::random_parameters(random, 4, 6, 2),
+                                              "plain", "tuned", "wide");
+  model.gate = testing::box(4, -2.0, 2.0, 3.0);
+  set.show_correction("nfnn", testing::shared(model), {.kappa = 0.5});
+  const LineScenario scenario = testing::radar_family(20);
+  const std::vector<NamedScenario> scenarios{{"family", &scenario}};
+  const ComparisonOptions asked = options(3000);
+  ComparisonRuns runs(set, scenarios, asked);
+  constexpr std::size_t kBlock = 187;  // the last, of 8 of 16 runs
+  ASSERT_EQ(runs.runs_in(kBlock), 8u);
+  for (const std::size_t block : {std::size_t{5}, kBlock}) {
+    ComparisonTally alone(set, runs.scorers(), asked, kMostValuesApart, true);
+    TrackerSet copy = set.fresh();
+    for (std::size_t i = 0; i < runs.runs_in(block); ++i) {
+      const Recording recording = scenario.simulate({asked.seed, asked.role, 16 * block + i});
+      RunOutcome outcome;
+      outcome.corrections = correction_tallies(copy);
+      outcome.scores = score_recording(copy, runs.scorers(), recording, asked.scoring, [&](std::size_t step) {
+        outcome.corrections[2]->take(step, copy.records(2), copy.correction(2)->accounts());
+      });
+      alone.add(outcome);
+    }
+    EXPECT_EQ(runs.run(block, 0), alone.bytes(false)) << block;
   }
 }
 

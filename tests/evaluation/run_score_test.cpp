@@ -131,10 +131,12 @@ TEST(ScoreRecordings, AreThoseOfEachAlone) {
       const std::vector<RunScore> alone = score_recording(set, scorers, recordings[i], rule);
       for (std::size_t tracker = 0; tracker < 2; ++tracker)
         for (std::size_t step = 0; step < recordings[i].measurements.size(); ++step) {
-          const double error = alone[tracker].error[0][step];
-          EXPECT_TRUE(scores[i][tracker].error[0][step] == error ||
-                      (std::isnan(error) && std::isnan(scores[i][tracker].error[0][step])))
-              << "recording " << i << " tracker " << tracker << " step " << step;
+          const RunScore &a = scores[i][tracker], &b = alone[tracker];
+          for (const auto& [mine, theirs] :
+               {std::pair(a.error[0][step], b.error[0][step]), std::pair(a.nees[step], b.nees[step]),
+                std::pair(a.quantity_nees[0][step], b.quantity_nees[0][step])})
+            EXPECT_TRUE(mine == theirs || (std::isnan(mine) && std::isnan(theirs)))
+                << "recording " << i << " tracker " << tracker << " step " << step;
         }
     }
   }

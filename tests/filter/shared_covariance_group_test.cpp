@@ -118,6 +118,50 @@ TEST(SharedCovarianceGroup, CopiesAnother) {
   copy->assign(*both.shared);
   both.shared.swap(copy);
   both.expect_same();
+  both.step(1.0, {30.0, 40.0});  // over the time that the copy has never crossed
+  both.expect_same();
+  ASSERT_TRUE(both.begin(0));  // fewer families than the other has
+  copy->assign(*both.shared);
+  both.shared.swap(copy);
+  both.step(1.0, {5.0, 6.0});
+  both.expect_same();
+}
+
+// Velocities that are known exactly, and a measurement before anything was crossed.
+TEST(SharedCovarianceGroup, PriorsMayBeSingular) {
+  Both both(4);
+  const Eigen::Matrix4d P = Eigen::Vector4d(1e4, 2e4, 0.0, 0.0).asDiagonal();
+  for (std::size_t i = 0; i < both.shared->size(); ++i) {
+    const Eigen::Vector4d x(0.0, 0.0, 10.0 * static_cast<double>(i), 50.0);
+    EXPECT_TRUE(both.shared->begin(i, x.data(), P.data()) & both.separate->begin(i, x.data(), P.data()));
+  }
+  const Positions positions({10.0, 20.0});
+  std::vector<double> a(both.shared->size()), b(a.size());
+  both.shared->update(positions.taken, a);
+  both.separate->update(positions.taken, b);
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], kExact * std::abs(b[i])) << "member " << i;
+  both.expect_same();
+  both.step(1.0, {30.0, 40.0});
+  both.expect_same();
+}
+
+// A sensor that says nonsense of its errors is not believed; the members of the other go on.
+TEST(SharedCovarianceGroup, FamiliesOfASensorWithoutCovarianceStay) {
+  Both both(3);
+  ASSERT_TRUE(both.begin(0));
+  Positions positions({10.0, 20.0});
+  positions.second.set(Position{Eigen::Vector2d(100.0, -1.0).asDiagonal()}, {10.0, 20.0});
+  std::vector<double> gained(both.shared->size());
+  BoundedVector x;
+  BoundedMatrix before, after;
+  for (const std::size_t i : {0u, 7u}) {
+    ASSERT_TRUE(both.begin(0));
+    both.shared->estimate(i, x, before);
+    both.shared->update(positions.taken, gained);
+    both.shared->estimate(i, x, after);
+    EXPECT_EQ(std::isfinite(gained[i]), i == 0u);
+    EXPECT_EQ(after == before, i == 7u);
+  }
 }
 
 TEST(SharedCovarianceGroup, MemberThatCannotExplainAMeasurementHasLostAlone) {

@@ -231,22 +231,25 @@ TEST(StatePack, IsOfKalmanFiltersInTheDefaultFormAndOfModelsOfThem) {
   EXPECT_FALSE(pack_of(InteractingMultipleModel(std::move(modes), star_chain(2, 0.1, 0.1, 1.0, 1.0))));
 }
 
-// One lane that goes wrong says so, and is as it was; the others do not notice.
+// One lane that goes wrong says so, and keeps what it held; the others do not notice.
 TEST(StatePack, IsNotCertainOfWhatGoesWrong) {
+  constexpr int kWrong = 3;
+  constexpr LaneMask kOthers = kAll & static_cast<LaneMask>(~lane_bit(kWrong));
   for (const bool multiple : {false, true}) {
     const std::unique_ptr<TrackedState> prototype =
         multiple ? multiple_model(3, false) : state_of<KalmanFilter<4>>(ConstantVelocity<2, Noise>{{0.5}});
     Both both(*prototype);
     if (!both.pack) GTEST_SKIP() << "no pack on this processor";
-    constexpr int kWrong = 3;
-    constexpr LaneMask kOthers = kAll & static_cast<LaneMask>(~lane_bit(kWrong));
-    const BoundedVector held = both.state(kWrong).x();
+    both.predict(kAll, all_after(1.0));
+    both.update(kAll, both.looks(position, false));
+    const BoundedVector x = both.state(kWrong).x();
+    const BoundedMatrix P = both.state(kWrong).P();
 
     std::array<double, kPackLanes> dt_s = all_after(1.0);
     dt_s[kWrong] = kInfinity;
     EXPECT_EQ(both.pack->predict(kAll, dt_s.data()), kOthers);
-    both.predict(kAll, all_after(1.0));
     for (const int wrong : {0, 1, 2}) {
+      EXPECT_EQ(both.pack->predict(kAll, all_after(1.0).data()), kAll);
       std::array<Taken, kPackLanes> taken = both.looks(position, false);
       if (wrong == 0)  // no number
         taken[kWrong] = position(Eigen::Vector2d(kNaN, 0.0));
@@ -259,12 +262,69 @@ TEST(StatePack, IsNotCertainOfWhatGoesWrong) {
       std::array<const AnyMeasurement*, kPackLanes> measurements{};
       for (std::size_t i = 0; i < taken.size(); ++i) measurements[i] = taken[i].get();
       EXPECT_EQ(both.pack->update(kAll, measurements.data()), kOthers) << wrong;
-      both.pack->predict(kAll, all_after(1.0).data());
+      StateUpdate update;
+      for (int lane = 0; lane < kPackLanes; ++lane) {
+        if (lane == kWrong) continue;
+        both.state(lane).predict(1.0);
+        both.state(lane).update(*taken[static_cast<std::size_t>(lane)], update);
+        both.expect_same_estimate(lane);
+      }
+      both.pack->keep(kOthers);
     }
-    const std::unique_ptr<TrackedState> left = prototype->fresh();
-    both.pack->leave(kWrong, *left);
-    EXPECT_EQ(left->x(), held);
+    for (int lane = 0; lane < kPackLanes; ++lane) {
+      const std::unique_ptr<TrackedState> left = prototype->fresh();
+      both.pack->leave(lane, *left);
+      EXPECT_EQ(left->x(), lane == kWrong ? x : BoundedVector(both.state(lane).x()));
+      EXPECT_EQ(left->P(), lane == kWrong ? P : BoundedMatrix(both.state(lane).P()));
+    }
   }
+}
+
+// Modes that are surely in two places: the S of both together has no second axis to speak of.
+TEST(StatePack, SaysLikeAModelThatItsInnovationHasNoCovariance) {
+  const std::unique_ptr<TrackedState> prototype = multiple_model(2, false);
+  const std::unique_ptr<StatePack> pack = pack_of(*prototype);
+  if (!pack) GTEST_SKIP() << "no pack on this processor";
+  auto& model = static_cast<InteractingMultipleModel&>(*prototype);
+  const Eigen::Matrix4d P = 1e-6 * Eigen::Matrix4d::Identity();
+  for (const int mode : {0, 1}) {
+    const Eigen::Vector4d x((mode == 0 ? 1.0 : -1.0) * 3.1e6, (mode == 0 ? 1.0 : -1.0) * 7.7e6, 0.0, 0.0);
+    model.begin_mode(mode, x.data(), P.data());
+  }
+  model.believe(Eigen::Vector2d(0.5, 0.5));
+  pack->enter(0, model);
+  const double dt_s = 1e-3;
+  const Taken seen = std::make_unique<ErasedMeasurement<CartesianPosition<2>>>(
+      CartesianPosition<2>{1e-6 * Eigen::Matrix2d::Identity()}, Eigen::Vector2d(1.0, 2.0), true);
+  const AnyMeasurement* measurement = seen.get();
+  StateUpdate own, packed;
+  const LaneMask predicted = pack->predict(1, &dt_s);
+  const LaneMask certain = predicted ? pack->update(1, &measurement) : LaneMask{0};
+  model.predict(dt_s);
+  const StepStatus status = model.update(*seen, own);
+  if (certain) pack->update_of(0, packed);
+  const bool packed_is_good = certain && std::isfinite(packed.nis);
+  EXPECT_EQ(status, StepStatus::failed);
+  EXPECT_FALSE(packed_is_good) << packed.nis;
+}
+
+TEST(StatePack, TellsOfPlacesThatNoTargetIsAt) {
+  const std::unique_ptr<TrackedState> prototype = state_of<KalmanFilter<4>>(ConstantVelocity<2, Noise>{{0.5}});
+  const std::unique_ptr<StatePack> pack = pack_of(*prototype);
+  if (!pack) GTEST_SKIP() << "no pack on this processor";
+  const Eigen::Matrix4d P = 100.0 * Eigen::Matrix4d::Identity();
+  for (const int lane : {0, 1, 2}) {
+    const Eigen::Vector4d x(lane == 1 ? 9.9e6 : 0.0, 0.0, lane == 1 ? 2e5 : 0.0, 3e7);
+    prototype->begin(x.data(), (lane == 2 ? 1e13 * P : P).eval().data());
+    pack->enter(lane, *prototype);
+  }
+  EXPECT_EQ(pack->free_lane(), 3);
+  EXPECT_EQ(pack->predict(7, all_after(0.1).data()), 7);
+  EXPECT_EQ(pack->within(7, 2, 1e7), 3) << "one does not know where it is";
+  EXPECT_EQ(pack->predict(7, all_after(1.0).data()), 7);
+  EXPECT_EQ(pack->within(7, 2, 1e7), 0) << "velocities may be large, places not";
+  pack->drop(1);
+  EXPECT_EQ(pack->free_lane(), 1);
 }
 
 }  // namespace

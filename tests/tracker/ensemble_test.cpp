@@ -92,5 +92,34 @@ TEST(Ensemble, FreshBeginsAnewAndIsIndependent) {
   EXPECT_EQ(ensemble.record(0, 0)->x, copy.record(0, 0)->x);
 }
 
+// Side by side what can be, one by one what cannot, each on its own measurement or on none.
+TEST(EnsemblePack, EveryEnsembleStepsAsByItself) {
+  Ensemble prototype;
+  prototype.add("two", two_tracks(false));
+  prototype.add("plain", RadarFilter{}.tracker());
+  std::vector<Ensemble> together, alone;
+  for (int i = 0; i < 3; ++i) {
+    together.push_back(prototype.fresh());
+    alone.push_back(prototype.fresh());
+  }
+  EnsemblePack pack({&together[0], &together[1], &together[2]});
+  for (int k = 1; k <= 12; ++k) {
+    const Measurement measured[] = {position(k, 10.0 * k), position(0.5 * k, -7.0 * k), position(2.0 * k, k)};
+    const Measurement* given[] = {&measured[0], k % 3 == 0 ? nullptr : &measured[1], &measured[2]};
+    pack.step(given);
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (given[i]) alone[i].step(*given[i]);
+      for (const int member : {0, 1}) {
+        ASSERT_EQ(together[i].records(member).size(), alone[i].records(member).size());
+        for (std::size_t r = 0; r < alone[i].records(member).size(); ++r) {
+          EXPECT_EQ(together[i].records(member)[r].time_s, alone[i].records(member)[r].time_s);
+          EXPECT_EQ(together[i].records(member)[r].x, alone[i].records(member)[r].x);
+        }
+      }
+    }
+  }
+  EXPECT_THROW(EnsemblePack({}), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace truebearing::ensemble_test

@@ -51,6 +51,7 @@ CorrectionSpec spec(std::size_t runs, const std::string& teacher = "smooth") {
 TeacherSet whole_tracks(const CorrectionSpec& spec, const Scenario& scenario) {
   TeacherOptions options;
   options.whole_tracks = true;
+  options.threads = 1;  // for several runs to be made together
   return collect_teacher_set(ensemble(), spec, scenario, options);
 }
 

@@ -187,14 +187,39 @@ TEST(Teacher, WholeTracksHoldTheRowsThatAreNotTaught) {
   }
 }
 
+// By one thread eight runs at a time, by sixteen one by one.
 TEST(Teacher, RowsAreTheSameForAnyNumberOfThreads) {
   const LineScenario scenario = testing::radar_family(30);
-  const TeacherSet one = collect_teacher_set(ensemble(), spec(20), scenario, {.threads = 1, .progress = {}});
-  for (const int threads : {2, 8}) {
-    const TeacherSet many = collect_teacher_set(ensemble(), spec(20), scenario, {.threads = threads, .progress = {}});
-    EXPECT_EQ(one.X, many.X);
-    EXPECT_EQ(one.Y, many.Y);
+  for (const bool whole_tracks : {false, true}) {
+    TeacherOptions options{.threads = 1, .progress = {}, .whole_tracks = whole_tracks};
+    std::size_t done = 0;
+    options.progress = [&](std::size_t runs, std::size_t total) {
+      EXPECT_EQ(total, 20u);
+      EXPECT_GT(runs, done);
+      done = runs;
+    };
+    const std::vector<double> one = numbers(collect_teacher_set(ensemble(), spec(20), scenario, options));
+    EXPECT_EQ(done, 20u);
+    options.progress = {};
+    for (const int threads : {2, 16}) {
+      options.threads = threads;
+      EXPECT_EQ(numbers(collect_teacher_set(ensemble(), spec(20), scenario, options)), one);
+    }
   }
+}
+
+// Ranks on machines of other sizes cut the runs alike.
+TEST(Teacher, RanksMayHaveOtherNumbersOfThreads) {
+  const LineScenario scenario = testing::radar_family(12);
+  const TeacherOptions options{.seed = 9, .threads = 1, .progress = {}};
+  const std::vector<double> one = numbers(collect_teacher_set(ensemble(), spec(40), scenario, options));
+  const auto sets = testing::at_ranks(2, [&](Ranks& ranks) {
+    TeacherOptions shared = options;
+    shared.ranks = &ranks;
+    shared.threads = ranks.rank() == 0 ? 1 : 8;
+    return numbers(collect_teacher_set(ensemble(), spec(40), scenario, shared));
+  });
+  EXPECT_EQ(sets[0], one);
 }
 
 TEST(Teacher, DrawsItsOwnRoleOnly) {

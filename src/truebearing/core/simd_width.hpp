@@ -28,18 +28,19 @@ struct VectorOf {
   }
 };
 
-/// A sum of numbers that are added kCount at a time, in one order whatever kCount is: first those that stand eight apart,
+/// A sum of numbers that are added four or eight at a time, in one order: first those that stand eight apart,
 /// then those of eight that stand four apart.
 template <int kCount>
 class TotalOf {
   using Doubles = typename VectorOf<kCount>::Doubles;
+  static_assert(kCount == 4 || kCount == 8);
   static constexpr int kParts = 8 / kCount;
 
  public:
   [[gnu::always_inline]] TotalOf() {
     for (Doubles& part : parts_) part = Doubles{};
   }
-  /// Those that begin at place `first`.
+  /// Those that begin at place `first`, a multiple of kCount.
   [[gnu::always_inline]] void add(int first, const Doubles& value) { parts_[first / kCount % kParts] += value; }
   [[gnu::always_inline]] double sum() const {
     typename VectorOf<4>::Doubles four;

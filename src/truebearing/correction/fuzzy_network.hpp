@@ -71,8 +71,8 @@ class FuzzyNetwork {
   kernels::RuleBlocks blocks() const;
 
   Parameters parameters_;
-  // The exponents as they are evaluated, -((u - c) / (sqrt(2) s))^2: column b d + i is input i of block b.
   int blocks_ = 0;
+  // The exponents as they are evaluated, -((u - c) / (sqrt(2) s))^2: column b d + i is input i of block b.
   Blocks scaled_centres_;               // c / (sqrt(2) s)
   Blocks inverse_widths_;               // 1 / (sqrt(2) s)
   Eigen::MatrixXd scaled_consequents_;  // (M x p), in the units of the outputs

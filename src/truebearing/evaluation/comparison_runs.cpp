@@ -52,9 +52,8 @@ std::size_t ComparisonRuns::runs_in(std::size_t block) const {
 }
 
 std::string ComparisonRuns::run(std::size_t block, std::size_t worker) {
-  constexpr std::size_t kMostTogether = kPackLanes;
   std::unique_ptr<TrackerSetPack>& copies = copies_[worker];
-  if (!copies) copies = std::make_unique<TrackerSetPack>(trackers_, std::min(kMostTogether, runs_of_block_));
+  if (!copies) copies = std::make_unique<TrackerSetPack>(trackers_, trackers_.best_together(runs_of_block_));
   const bool compact = runs_of_block_ > kMostRunsEvenlyShared;
   ComparisonTally tally(trackers_, scorers_, options_, compact ? kMostRunsApart : kMostValuesApart, options_.details);
   const std::size_t first = block % blocks_of_set_ * runs_of_block_, count = runs_in(block);

@@ -17,8 +17,23 @@ std::size_t worker_count(int threads) {
 }
 
 std::size_t runs_together(std::size_t runs, int threads) {
-  constexpr std::size_t kMost = kPackLanes, kTurnsOfAWorker = 2;
-  return std::clamp(runs / (kTurnsOfAWorker * worker_count(threads)), std::size_t{1}, kMost);
+  constexpr std::size_t kTurnsOfAWorker = 2;
+  return std::clamp(runs / (kTurnsOfAWorker * worker_count(threads)), std::size_t{1}, std::size_t{kPackLanes});
+}
+
+void monte_carlo_together(std::size_t runs, std::size_t together, int threads,
+                          const std::function<void(std::size_t first, std::size_t count, std::size_t worker)>& body,
+                          const Progress& progress) {
+  std::atomic<std::size_t> done{0};
+  Progress of_groups;
+  if (progress) of_groups = [&](std::size_t, std::size_t) { progress(done, runs); };
+  monte_carlo((runs + together - 1) / together, threads,
+              [&](std::size_t group, std::size_t worker) {
+                const std::size_t first = group * together, count = std::min(together, runs - first);
+                body(first, count, worker);
+                done += count;
+              },
+              of_groups);
 }
 
 void monte_carlo(std::size_t runs, int threads, const std::function<void(std::size_t run, std::size_t worker)>& body,

@@ -18,8 +18,15 @@ void monte_carlo(std::size_t runs, int threads, const std::function<void(std::si
 
 std::size_t worker_count(int threads);
 
-/// How many runs of so many are best made together by a worker, side by side in the lanes of registers (tracker_pack.hpp):
-/// 1 to kPackLanes, and no more than leave each worker something to do.
+/// How many runs a worker should make together, side by side in the lanes of registers (tracker_pack.hpp): 1 to
+/// kPackLanes, so many that each worker has two turns at least. It depends on the machine, and decides who makes a run and
+/// when, never what is made.
 std::size_t runs_together(std::size_t runs, int threads);
+
+/// monte_carlo() in groups of runs, [first, first + count): `together`, of which the last may have fewer. Progress is of
+/// runs.
+void monte_carlo_together(std::size_t runs, std::size_t together, int threads,
+                          const std::function<void(std::size_t first, std::size_t count, std::size_t worker)>& body,
+                          const Progress& progress = {});
 
 }  // namespace truebearing

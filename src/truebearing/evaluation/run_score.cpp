@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "truebearing/core/error.hpp"
+#include "truebearing/evaluation/step_through.hpp"
 #include "truebearing/evaluation/target_record.hpp"
 #include "truebearing/evaluation/time_steps.hpp"
 
@@ -152,21 +153,14 @@ std::vector<std::vector<RunScore>> score_recordings(
     TrackerSetPack& trackers, const std::vector<Scorer>& scorers, std::span<const Recording* const> recordings,
     const ScoringRule& rule, const std::function<void(std::size_t recording, std::size_t step)>& scored) {
   std::vector<RunsScorer> runs;
-  std::size_t steps = 0;
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     runs.emplace_back(scorers, *recordings[i], rule);
     trackers.set(i).reset();
     trackers.set(i).foresee(recordings[i]->measurements);
-    steps = std::max(steps, recordings[i]->measurements.size());
   }
-  std::vector<const Measurement*> measurements(trackers.size());
-  for (std::size_t step = 0; step < steps; ++step) {
-    for (std::size_t i = 0; i < recordings.size(); ++i)
-      measurements[i] = step < recordings[i]->measurements.size() ? &recordings[i]->measurements[step] : nullptr;
-    trackers.step(measurements);
-    for (std::size_t i = 0; i < recordings.size(); ++i)
-      if (measurements[i] && runs[i].take(step, trackers.set(i)) && scored) scored(i, step);
-  }
+  step_through(trackers, recordings, [&](std::size_t i, std::size_t step) {
+    if (runs[i].take(step, trackers.set(i)) && scored) scored(i, step);
+  });
   std::vector<std::vector<RunScore>> scores;
   for (std::size_t i = 0; i < recordings.size(); ++i) scores.push_back(runs[i].finish(trackers.set(i)));
   return scores;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "truebearing/evaluation/tracker_set.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "truebearing/core/error.hpp"
@@ -77,6 +78,10 @@ TrackerSet TrackerSet::fresh() const {
   copy.entries_ = entries_;
   copy.reset();
   return copy;
+}
+
+std::size_t TrackerSet::best_together(std::size_t runs) const {
+  return ensemble_.gains_together() ? std::min(runs, std::size_t{kPackLanes}) : 1;
 }
 
 TrackerSetPack::TrackerSetPack(const TrackerSet& trackers, std::size_t copies)

@@ -38,6 +38,8 @@ class TrackerSet {
   /// All measurements of a run, after reset(), for the trackers that look back.
   void foresee(std::span<const Measurement> measurements) { ensemble_.foresee(measurements); }
   TrackerSet fresh() const;
+  /// How many copies are best stepped together (TrackerSetPack), of `runs` at most: one, where several gain nothing.
+  std::size_t best_together(std::size_t runs) const;
   /// Becomes a copy of `other` as it stands, without the records of its last step, where that was made by fresh() from
   /// this one or from the same. The name of a tracker that cannot be copied, and nothing is of use then; else empty.
   std::string assign(const TrackerSet& other);
@@ -63,12 +65,12 @@ class TrackerSet {
 /// EnsemblePack.
 class TrackerSetPack {
  public:
-  /// copies: 1 to kPackLanes.
+  /// copies: 1 or more; see TrackerSet::best_together().
   TrackerSetPack(const TrackerSet& trackers, std::size_t copies);
 
   std::size_t size() const { return sets_.size(); }
   TrackerSet& set(std::size_t i) { return sets_[i]; }
-  /// One for each copy, nullptr where it has none now.
+  /// One for each copy, nullptr where it has none now: its records stay those of its last step.
   void step(std::span<const Measurement* const> measurements);
 
  private:

@@ -60,7 +60,7 @@ struct Entering {
 };
 
 template <int N>
-struct Mixing {
+struct MixingModels {
   template <int kWidth>
   [[gnu::always_inline]] static inline void entries_loops(const FilterBlock<N>* modes, int r, const OfFilters* weights,
                                                           FilterBlock<N>* mixed) {
@@ -140,7 +140,7 @@ struct Mixing {
 };
 
 template <int N, int M>
-struct Combining {
+struct CombiningModels {
   template <int kWidth>
   [[gnu::always_inline]] static inline void innovations_loops(const UpdateBlock<N>* updates, int r, const OfFilters* c,
                                                               UpdateBlock<N>& combined) {
@@ -180,7 +180,8 @@ struct Combining {
         }
       Doubles nis{};
       for (int k = 0; k < M; ++k) {  // as mahalanobis_squared() does
-        const Doubles inverse = 1.0 / S[k][k];
+        const Doubles pivot = S[k][k] > 0.0 ? S[k][k] : Doubles{} + std::numeric_limits<double>::quiet_NaN();
+        const Doubles inverse = 1.0 / pivot;
         nis += nu[k] * nu[k] * inverse;
         for (int i = k + 1; i < M; ++i) {
           const Doubles factor = S[i][k] * inverse;
@@ -273,22 +274,22 @@ void weigh_entries(const OfFilters* Pi, const OfFilters* mu, int r, OfFilters* c
 
 template <int N>
 void mix_entries(const FilterBlock<N>* modes, int r, const OfFilters* weights, FilterBlock<N>* mixed) {
-  Mixing<N>().entries(modes, r, weights, mixed);
+  MixingModels<N>().entries(modes, r, weights, mixed);
 }
 
 template <int N>
 void mix_models(const FilterBlock<N>* modes, int r, const OfFilters* weights, FilterBlock<N>& mixed) {
-  Mixing<N>().models(modes, r, weights, mixed);
+  MixingModels<N>().models(modes, r, weights, mixed);
 }
 
 template <int N, int M>
 void combine_innovations(const UpdateBlock<N>* updates, int r, const OfFilters* c, UpdateBlock<N>& combined) {
-  Combining<N, M>().innovations(updates, r, c, combined);
+  CombiningModels<N, M>().innovations(updates, r, c, combined);
 }
 
 template <int N, int M>
 void combine_gains(const UpdateBlock<N>* updates, int r, const OfFilters* mu, UpdateBlock<N>& combined) {
-  Combining<N, M>().gains(updates, r, mu, combined);
+  CombiningModels<N, M>().gains(updates, r, mu, combined);
 }
 
 template <int N>

@@ -4,7 +4,6 @@
 
 #include <cstddef>
 
-#include "truebearing/core/simd_lanes.hpp"
 #include "truebearing/core/simd_width.hpp"
 #include "truebearing/filter/factorization.hpp"
 #include "truebearing/filter/packed_filters_kernel.hpp"

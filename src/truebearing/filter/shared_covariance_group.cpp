@@ -105,6 +105,7 @@ class SharedCovarianceGroup final : public FilterGroup {
         for (int l = 0; l < M; ++l) S(l, m) = update.S[l][m][lane];
       }
       const Ldlt<M, double> factors(S, Eigen::Matrix<double, M, 1>::Zero());
+      // Of an innovation of zero the log likelihood is the determinant's.
       kernels::take_position<N, M>(position->z.data(), K.data(), factors.L.data(), factors.inverse_D.data(),
                                    -2.0 * update.log_likelihood[lane] - M * kernels::kLogTwoPi,
                                    x_.data() + family.first, family.size(), stride_, of_family);

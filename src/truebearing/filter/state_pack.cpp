@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "truebearing/filter/state_pack.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -48,17 +47,26 @@ class FilterPack final : public StatePack {
     nonlinear_.reserve(motions_.size() * kPackLanes);
   }
 
+  int free_lane() const override {
+    for (int lane = 0; lane < kPackLanes; ++lane)
+      if (!has_lane(inside_, lane)) return lane;
+    return -1;
+  }
+
   void enter(int lane, const TrackedState& state) override {
     inside_ |= lane_bit(lane);
     if (!is_multiple()) return set(0, lane, state);
+    const auto of_model = state.modes();
     for (int j = 0; j < modes(); ++j) {
-      set(j, lane, *state.modes()[static_cast<std::size_t>(j)]);
+      set(j, lane, *of_model[static_cast<std::size_t>(j)]);
       at(held_mu_, j)[lane] = (*state.mode_probabilities())[j];
     }
   }
 
+  void drop(int lane) override { inside_ &= static_cast<LaneMask>(~lane_bit(lane)); }
+
   void leave(int lane, TrackedState& state) override {
-    inside_ &= static_cast<LaneMask>(~lane_bit(lane));
+    drop(lane);
     State x;
     Matrix P;
     if (!is_multiple()) {
@@ -315,13 +323,13 @@ class FilterPack final : public StatePack {
   std::vector<OfFilters> Pi_, weights_;    // [i r + j]
   std::vector<OfFilters> held_mu_, mu_;    // of next_, c where it is predicted
   std::vector<OfFilters> powers_;
-  kernels::FilterBlock<N> mixed_;  // next_ as one estimate, where there are several modes
-  kernels::UpdateBlock<N> combined_;
+  kernels::FilterBlock<N> mixed_{};  // next_ as one estimate, where there are several modes
+  kernels::UpdateBlock<N> combined_{};
   int measured_ = 1;  // m of the last update
 };
 
 template <int N>
-std::unique_ptr<StatePack> packed(const TrackedState& state) {
+std::unique_ptr<StatePack> filter_pack(const TrackedState& state) {
   typename FilterPack<N>::Motions motions;
   const auto add = [&](const TrackedState& mode) {
     const auto* filter = dynamic_cast<const FilterState<KalmanFilter<N>>*>(&mode);
@@ -343,7 +351,7 @@ bool has_long_registers() {
 #if defined(__x86_64__) && defined(__GNUC__)
   return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
 #else
-  return true;
+  return false;
 #endif
 }
 
@@ -353,7 +361,7 @@ std::unique_ptr<StatePack> pack_of(const TrackedState& state) {
   std::unique_ptr<StatePack> pack;
   if (!has_long_registers()) return pack;
   with_count(state.size(), [&]<int N>(std::integral_constant<int, N>) {
-    if constexpr (N == 2 || N == 4 || N == 6) pack = packed<N>(state);
+    if constexpr (N == 2 || N == 4 || N == 6) pack = filter_pack<N>(state);
   });
   return pack;
 }

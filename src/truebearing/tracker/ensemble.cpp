@@ -2,6 +2,7 @@
 #include "truebearing/tracker/ensemble.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "truebearing/core/error.hpp"
@@ -38,6 +39,10 @@ std::string Ensemble::assign(const Ensemble& other) {
   return {};
 }
 
+bool Ensemble::gains_together() const {
+  return std::any_of(members_.begin(), members_.end(), [](const Member& m) { return m.tracker->pack() != nullptr; });
+}
+
 void Ensemble::foresee(std::span<const Measurement> measurements) {
   for (Member& member : members_) member.tracker->foresee(measurements);
 }
@@ -56,6 +61,7 @@ const StepRecord* Ensemble::record(int member, int track) const {
 
 EnsemblePack::EnsemblePack(std::vector<Ensemble*> ensembles)
     : ensembles_(std::move(ensembles)), lanes_(ensembles_.size()) {
+  if (ensembles_.empty()) throw std::invalid_argument("there is an ensemble to step");
   for (const Ensemble::Member& member : ensembles_.front()->members_)
     packs_.push_back(ensembles_.size() > 1 ? member.tracker->pack() : nullptr);
 }

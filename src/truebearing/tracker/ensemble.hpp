@@ -36,6 +36,9 @@ class Ensemble {
   /// empty.
   std::string assign(const Ensemble& other);
 
+  /// Whether several of them cost less stepped together (EnsemblePack) than one after another.
+  bool gains_together() const;
+
   /// The records of the last step. Valid until the next step.
   std::span<const StepRecord> records(int member) const { return at(member).records; }
   /// The member's record for that track, nullptr where it has none.
@@ -58,10 +61,11 @@ class Ensemble {
 /// (tracker_pack.hpp), where that is of use.
 class EnsemblePack {
  public:
-  /// `ensembles` (1 to kPackLanes) were made by fresh() from one, and stay where they are.
+  /// `ensembles` (1 or more, of which kPackLanes are side by side) were made by fresh() from one, and stay where they are.
   explicit EnsemblePack(std::vector<Ensemble*> ensembles);
 
-  /// One for each ensemble, nullptr where it has none now.
+  std::size_t size() const { return ensembles_.size(); }
+  /// One for each ensemble, nullptr where it has none now: its records stay those of its last step.
   void step(std::span<const Measurement* const> measurements);
 
  private:

@@ -90,7 +90,7 @@ std::optional<std::span<const StepRecord>> FilterTracker::open(const Measurement
 }
 
 std::span<const StepRecord> FilterTracker::go_on(const Measurement& measurement) {
-  come_home();
+  fetch_state();
   begin_record(measurement);
   // The filter stays at its last used measurement: a missing one leaves no trace in what follows, to the bit.
   kept_->assign(*state_);
@@ -149,8 +149,8 @@ bool FilterTracker::assign(const Tracker& tracker) {
   guard_ = other->guard_;
   gates_ = other->gates_;
   begun_ = other->begun_;
+  if (other != this) place_.drop();
   state_->assign(other->state());
-  is_in_pack_ = false;
   used_time_s_ = other->used_time_s_;
   passage_ = other->passage_;
   lost_ = other->lost_;
@@ -175,7 +175,7 @@ RecordBlocks FilterTracker::blocks() const {
 
 void FilterTracker::begin(const PriorStart& start) {
   state_->begin(start.x.data(), start.P.data());
-  is_in_pack_ = false;
+  place_.drop();
   begun_ = true;
 }
 
@@ -183,7 +183,8 @@ void FilterTracker::restart(double time_s) {
   ++record_.track;
   passage_.begins = true;
   forget();
-  begun_ = is_in_pack_ = false;
+  begun_ = false;
+  place_.drop();
   if (const auto* prior = std::get_if<PriorStart>(&start_)) begin(*prior);
   used_time_s_ = time_s;
 }

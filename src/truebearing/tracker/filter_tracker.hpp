@@ -64,9 +64,10 @@ class FilterTracker : public Successor {
   RecordBlocks blocks() const override;
   TrackerCounts counts() const override { return guard_.counts; }
 
-  /// At the last used measurement, or as the track began; means nothing where is_lost().
+  /// At the last used measurement, or as the track began; means nothing where is_lost(). Not at the same time as another
+  /// call, though const: the state may have to be fetched from a pack.
   const TrackedState& state() const {
-    come_home();
+    fetch_state();
     return *state_;
   }
   double used_time_s() const { return used_time_s_; }
@@ -105,7 +106,7 @@ class FilterTracker : public Successor {
   bool is_ordinary(const Measurement& measurement) const;
   bool settle(const StatePack& pack, int lane, const Measurement& measurement, const AnyMeasurement& taken);
   void show(const StatePack& pack, int lane, BoundedVector& x, BoundedMatrix& P) const;
-  void come_home() const;
+  void fetch_state() const;
 
   const StateSpace* space_;
   std::unique_ptr<AnySensor> sensor_;
@@ -120,9 +121,7 @@ class FilterTracker : public Successor {
   std::unique_ptr<TrackedState> kept_;
   std::unique_ptr<TrackedState> ahead_;  // of state_ after ahead_s, for publishing
   // Where the state is held in state_'s place, while several trackers are stepped together.
-  std::shared_ptr<StatePack> pack_;
-  int lane_ = 0;
-  mutable bool is_in_pack_ = false;
+  mutable PlaceInPack place_;
   bool usable_ = false;  // the measurement of this step
   double used_time_s_ = 0.0;
   Passage passage_;

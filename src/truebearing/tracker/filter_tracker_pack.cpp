@@ -10,64 +10,74 @@
 namespace truebearing {
 
 std::unique_ptr<TrackerPack> FilterTracker::pack() const {
+  if (ahead_ || options_.output_pull > 0.0) return nullptr;
   std::shared_ptr<StatePack> states = pack_of(*state_);
-  if (!states || ahead_ || options_.output_pull > 0.0) return nullptr;
-  return std::make_unique<FilterTrackerPack>(std::move(states));
+  return states ? std::make_unique<FilterTrackerPack>(std::move(states)) : nullptr;
 }
 
 void FilterTrackerPack::step(std::span<Lane> lanes) {
-  if (lanes.empty()) return;
+  std::array<Lane*, kPackLanes> in{};  // of the pack's lanes, those that are stepped together
   std::array<double, kPackLanes> dt_s{};
   std::array<const AnyMeasurement*, kPackLanes> taken{};
-  const auto tracker_in = [&](int lane) -> FilterTracker& {
-    return static_cast<FilterTracker&>(*lanes[static_cast<std::size_t>(lane)].tracker);
-  };
+  const auto tracker_of = [](const Lane& lane) -> FilterTracker& { return static_cast<FilterTracker&>(*lane.tracker); };
   const auto each_of = [&](LaneMask some, const auto& body) {
-    for (int lane = 0; lane < static_cast<int>(lanes.size()); ++lane)
-      if (has_lane(some, lane)) body(lane, tracker_in(lane), lanes[static_cast<std::size_t>(lane)]);
+    for (int place = 0; place < kPackLanes; ++place)
+      if (has_lane(some, place)) {
+        Lane& lane = *in[static_cast<std::size_t>(place)];
+        body(place, tracker_of(lane), lane);
+      }
   };
 
-  LaneMask waiting = 0;  // for their filters
   LaneMask together = 0;
-  each_of(0xff, [&](int lane, FilterTracker& tracker, Lane& of_lane) {
-    of_lane.records = {};
-    if (!of_lane.measurement) return;
-    if (const auto records = tracker.open(*of_lane.measurement)) {
-      of_lane.records = *records;
-      return;
+  for (Lane& lane : lanes) {
+    lane.records = {};
+    if (!lane.measurement) continue;
+    FilterTracker& tracker = tracker_of(lane);
+    if (const auto records = tracker.open(*lane.measurement)) {
+      lane.records = *records;
+      continue;
     }
-    waiting |= lane_bit(lane);
-    if (!tracker.is_ordinary(*of_lane.measurement)) return;
-    together |= lane_bit(lane);
-    dt_s[static_cast<std::size_t>(lane)] = of_lane.measurement->time_s - tracker.used_time_s_;
-    if (tracker.is_in_pack_ && tracker.pack_ == states_ && tracker.lane_ == lane) return;
-    tracker.come_home();
-    tracker.pack_ = states_;
-    tracker.lane_ = lane;
-    tracker.is_in_pack_ = true;
-    states_->enter(lane, *tracker.state_);
-  });
+    if (!tracker.is_ordinary(*lane.measurement) || !find_place(tracker)) {
+      lane.records = tracker.go_on(*lane.measurement);
+      continue;
+    }
+    const int place = tracker.place_.lane();
+    together |= lane_bit(place);
+    in[static_cast<std::size_t>(place)] = &lane;
+    dt_s[static_cast<std::size_t>(place)] = lane.measurement->time_s - tracker.used_time_s_;
+  }
+  if (together == 0) return;
 
-  const FilterTracker& any = tracker_in(0);
-  const auto sensible = [&](LaneMask some) { return states_->within(some, any.space_->size() / 2, kFarthest_m); };
-  LaneMask done = together == 0 ? LaneMask{0} : sensible(states_->predict(together, dt_s.data()));
-  each_of(done, [&](int lane, FilterTracker& tracker, Lane& of_lane) {
-    tracker.begin_record(*of_lane.measurement);
+  const int positions = tracker_of(lanes.front()).space_->size() / 2;
+  const auto sensible = [&](LaneMask some) { return states_->within(some, positions, kFarthest_m); };
+  LaneMask done = sensible(states_->predict(together, dt_s.data()));
+  each_of(done, [&](int place, FilterTracker& tracker, Lane& lane) {
+    tracker.begin_record(*lane.measurement);
     Prediction& prediction = tracker.record_.prediction.emplace(Unfilled());
-    tracker.show(*states_, lane, prediction.x, prediction.P);
-    taken[static_cast<std::size_t>(lane)] = &tracker.sensor_->take(*of_lane.measurement, prediction);
+    tracker.show(*states_, place, prediction.x, prediction.P);
+    taken[static_cast<std::size_t>(place)] = &tracker.sensor_->take(*lane.measurement, prediction);
   });
   done = sensible(states_->update(done, taken.data()));
-  each_of(done, [&](int lane, FilterTracker& tracker, Lane& of_lane) {
-    if (tracker.settle(*states_, lane, *of_lane.measurement, *taken[static_cast<std::size_t>(lane)]))
-      of_lane.records = {&tracker.record_, 1};
+  each_of(done, [&](int place, FilterTracker& tracker, Lane& lane) {
+    if (tracker.settle(*states_, place, *lane.measurement, *taken[static_cast<std::size_t>(place)]))
+      lane.records = {&tracker.record_, 1};
     else
-      done &= static_cast<LaneMask>(~lane_bit(lane));
+      done &= static_cast<LaneMask>(~lane_bit(place));
   });
   // Those that go on alone take with them what was held before this step.
-  each_of(static_cast<LaneMask>(waiting & ~done),
-          [&](int, FilterTracker& tracker, Lane& of_lane) { of_lane.records = tracker.go_on(*of_lane.measurement); });
-  if (together != 0) states_->keep(done);
+  each_of(static_cast<LaneMask>(together & ~done),
+          [](int, FilterTracker& tracker, Lane& lane) { lane.records = tracker.go_on(*lane.measurement); });
+  states_->keep(done);
+}
+
+// False where all lanes are others'.
+bool FilterTrackerPack::find_place(FilterTracker& tracker) {
+  if (tracker.place_.is_in(states_)) return true;
+  const int free = states_->free_lane();
+  if (free < 0) return false;
+  states_->enter(free, tracker.state());
+  tracker.place_ = PlaceInPack(states_, free);
+  return true;
 }
 
 // The rest shows when the filter has been asked.
@@ -107,9 +117,8 @@ void FilterTracker::show(const StatePack& pack, int lane, BoundedVector& x, Boun
   P.conservativeResize(n, n);
 }
 
-void FilterTracker::come_home() const {
-  if (is_in_pack_) pack_->leave(lane_, *state_);
-  is_in_pack_ = false;
+void FilterTracker::fetch_state() const {
+  if (place_) place_.leave(*state_);
 }
 
 }  // namespace truebearing

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 
 #include "truebearing/tracker/filter_tracker.hpp"
 #include "truebearing/tracker/tracker_pack.hpp"
@@ -18,6 +19,8 @@ class FilterTrackerPack final : public TrackerPack {
   void step(std::span<Lane> lanes) override;
 
  private:
+  bool find_place(FilterTracker& tracker);
+
   std::shared_ptr<StatePack> states_;
 };
 

@@ -6,7 +6,6 @@
 
 #include <span>
 
-#include "truebearing/filter/lane_mask.hpp"
 #include "truebearing/measurement/measurement.hpp"
 #include "truebearing/tracker/step_record.hpp"
 
@@ -24,8 +23,8 @@ class TrackerPack {
 
   virtual ~TrackerPack() = default;
 
-  /// At most kPackLanes trackers made by fresh() from one; it costs least where they stand in the same lanes every time.
-  /// Between two calls each may be stepped, reset and asked by itself.
+  /// Trackers made by fresh() from one. There are kPackLanes lanes: a tracker that finds none free, since more take turns,
+  /// is stepped by itself. Between two calls each may be stepped, reset and asked by itself, on the thread of the pack.
   virtual void step(std::span<Lane> lanes) = 0;
 
  protected:

@@ -14,7 +14,7 @@
 namespace truebearing::plane_covariance_kernel_test {
 namespace {
 
-class PlaneCovarianceKernel : public testing::Test {
+class PlaneCovarianceKernel : public ::testing::Test {
  protected:
   Eigen::Matrix4d covariance() {
     Eigen::Matrix4d A;

@@ -26,9 +26,15 @@ AngleHypothesis& AngleHypotheses::next_child() {
   return children_[static_cast<std::size_t>(child_count_)];
 }
 
+// False where that fails, or where the child is the sibling again.
 bool AngleHypotheses::score(const AngleHypothesis& parent, const JointAngleState& prior, const RealInterval& interval,
-                            double middle_s, const SignalVector& start, AngleHypothesis& child) {
-  if (!update_.run(prior, interval, middle_s, start, options_.update, child.state)) return false;
+                            double middle_s, const SignalVector& start, const AngleHypothesis* sibling,
+                            AngleHypothesis& child) {
+  const int N = prior.targets();
+  if (!update_.find_mode(prior, interval, middle_s, start, options_.update)) return false;
+  if (sibling && !((update_.mode().head(N) - sibling->state.x.head(N)).cwiseAbs().maxCoeff() >= options_.new_rad))
+    return false;
+  if (!update_.give_posterior(prior, child.state)) return false;
   child.prior = prior;
   child.log_weight = parent.log_weight + update_.log_evidence();
   adapt(options_.motion, prior, child.state);
@@ -43,7 +49,9 @@ bool AngleHypotheses::update(const RealInterval& interval, double dt_s, double m
     AngleHypothesis& child = next_child();
     JointAngleState prior = parent.state;
     predict(prior, options_.motion, dt_s);
-    if (!score(parent, prior, interval, middle_s, prior.x.head(2 * prior.targets()), child)) continue;
+    if (!update_.take_prior(prior) ||
+        !score(parent, prior, interval, middle_s, prior.x.head(2 * prior.targets()), nullptr, child))
+      continue;
     ++child_count_;
     if (options_.beam > 1) add_children(parent, prior, child, interval, middle_s);
   }
@@ -66,8 +74,7 @@ void AngleHypotheses::add_children(const AngleHypothesis& parent, const JointAng
       std::swap(exchanged[i], exchanged[j]);
       std::swap(exchanged[N + i], exchanged[N + j]);
       AngleHypothesis& child = next_child();
-      if (!score(parent, prior, interval, middle_s, exchanged, child)) continue;
-      if ((child.state.x.head(N) - first.state.x.head(N)).cwiseAbs().maxCoeff() >= options_.new_rad) ++child_count_;
+      if (score(parent, prior, interval, middle_s, exchanged, &first, child)) ++child_count_;
     }
 }
 

@@ -52,7 +52,7 @@ class AngleHypotheses {
 
  private:
   bool score(const AngleHypothesis& parent, const JointAngleState& prior, const RealInterval& interval, double middle_s,
-             const SignalVector& start, AngleHypothesis& child);
+             const SignalVector& start, const AngleHypothesis* sibling, AngleHypothesis& child);
   void add_children(const AngleHypothesis& parent, const JointAngleState& prior, const AngleHypothesis& first,
                     const RealInterval& interval, double middle_s);
   void keep_best();

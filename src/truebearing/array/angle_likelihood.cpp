@@ -76,10 +76,11 @@ bool AngleLikelihood::evaluate(const RealInterval& interval, const SignalVector&
   const int N = static_cast<int>(m.size()) / 2, lanes = padded_to_widest(N);
   log_likelihood_ = 0.0;
   gradient_.setZero(2 * N);
-  presence_.setZero(N);
+  expected_alone_.setZero(N);
+  found_alone_.setZero(N);
+  snapshots_ = interval.snapshots();
   resize(interval.array(), N);
   for (LaneMatrix* information : {&angles_, &angle_power_, &powers_}) information->setZero();
-  SignalVector expected = SignalVector::Zero(N), found = SignalVector::Zero(N);
   double residual = 0.0;
   const double inverse_noise = 1.0 / noise_power;
 
@@ -121,22 +122,23 @@ bool AngleLikelihood::evaluate(const RealInterval& interval, const SignalVector&
       gradient_[i] += 2.0 * Ns * p * (found_d_[i] - dRa_(i, i));
       gradient_[N + i] += Ns * p * (found_a_[i] - aRa);
       const double without = 1.0 - p * aRa;  // R without signal i, by the same identity
-      expected[i] += Ns * aRa / without;
-      found[i] += Ns * found_a_[i] / (without * without);
+      expected_alone_[i] += Ns * aRa / without;
+      found_alone_[i] += Ns * found_a_[i] / (without * without);
     }
     residual += Ns * (block.trace - explained);
     log_likelihood_ -= Ns * ((interval.array().live_rows - N) * std::log(noise_power) + log_det_ + log_p +
                              (block.trace - explained) * inverse_noise);
   }
   J_.resize(2 * N, 2 * N);
-  J_.topLeftCorner(N, N) = angles_.topRows(N);
-  J_.topRightCorner(N, N) = angle_power_.topRows(N);
-  J_.bottomRightCorner(N, N) = powers_.topRows(N);
-  J_.bottomLeftCorner(N, N) = J_.topRightCorner(N, N).transpose();
-  for (int i = 0; i < N; ++i) presence_[i] = presence_of(interval.snapshots(), expected[i], found[i]);
+  bool is_finite = true;
+  kernels::assemble_information({N, lanes, angles_.data(), angle_power_.data(), powers_.data(), J_.data(), &is_finite});
   // E[sigma^2 tr(R^-1 R_hat)] is N sigma^2 + (M - N) times the true noise power.
   residual_power_ = (residual / interval.snapshots() - N * noise_power) / std::max(1, interval.array().live_rows - N);
-  return std::isfinite(log_likelihood_) && gradient_.allFinite() && J_.allFinite();
+  return std::isfinite(log_likelihood_) && gradient_.allFinite() && is_finite;
+}
+
+double AngleLikelihood::presence(int n) const {
+  return presence_of(snapshots_, expected_alone_[n], found_alone_[n]);
 }
 
 AngleLikelihood::Newcomer AngleLikelihood::search(const RealInterval& interval, const SignalVector& m,

@@ -39,7 +39,7 @@ class AngleLikelihood {
 
   /// Of signal n by itself, summed over blocks: twice the log likelihood that it adds to the others, were its power the
   /// best for this interval. Of the last evaluate().
-  double presence(int n) const { return presence_[n]; }
+  double presence(int n) const;
 
   /// Estimate of the noise power from what of the last interval the signals do not explain.
   double residual_power() const { return residual_power_; }
@@ -66,7 +66,8 @@ class AngleLikelihood {
   double log_likelihood_ = 0.0;
   SignalVector gradient_;
   SignalMatrix J_;
-  SignalVector presence_;
+  SignalVector expected_alone_, found_alone_;  // of each signal without the others, for its presence
+  double snapshots_ = 0.0;
   double residual_power_ = 0.0;
   // Signals are lanes (angle_likelihood_kernels.hpp). Of the block at hand:
   Eigen::MatrixXd A_, D_, W_, V_, RW_;        // a, d, R^-1 a, R^-1 d, R_hat R^-1 a as rows (lanes x M)

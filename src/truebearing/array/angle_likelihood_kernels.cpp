@@ -267,11 +267,38 @@ template <int kWidth>
   }
 }
 
+template <int kN>
+[[gnu::always_inline]] inline void assemble_information_of(const Assembly& s) {
+  const int N = kN > 0 ? kN : s.N, n = 2 * N;
+  for (int j = 0; j < N; ++j) {
+    double *of_angle = s.J + j * n, *of_power = s.J + (N + j) * n;
+    const double *angles = s.angles + j * s.lanes, *angle_power = s.angle_power + j * s.lanes,
+                 *powers = s.powers + j * s.lanes;
+#pragma omp simd
+    for (int i = 0; i < N; ++i) {
+      of_angle[i] = angles[i];
+      of_power[i] = angle_power[i];
+      of_power[N + i] = powers[i];
+    }
+    for (int i = 0; i < N; ++i) of_angle[N + i] = s.angle_power[i * s.lanes + j];
+  }
+  double rest = 0.0;  // no number where one of them is not finite
+#pragma omp simd reduction(+ : rest)
+  for (int i = 0; i < n * n; ++i) rest += 0.0 * s.J[i];
+  *s.is_finite = rest == 0.0;
+}
+template <int kWidth>
+[[gnu::always_inline]] inline void assemble_information_loops(const Assembly& s) {
+  with_count(
+      s.N, [&](auto known) __attribute__((always_inline)) { assemble_information_of<int(known)>(s); });
+}
+
 }  // namespace
 
 TRUEBEARING_FOR_WIDEST(steer_signals, (const Steering& s), (s))
 TRUEBEARING_FOR_WIDEST(couple, (const Coupling& s), (s))
 TRUEBEARING_FOR_WIDEST(score_signals, (const Scores& s), (s))
 TRUEBEARING_FOR_WIDEST(add_information, (const Information& s), (s))
+TRUEBEARING_FOR_WIDEST(assemble_information, (const Assembly& s), (s))
 
 }  // namespace truebearing::kernels

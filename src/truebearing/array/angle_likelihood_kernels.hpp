@@ -62,4 +62,14 @@ struct Information {
 };
 void add_information(const Information& s);
 
+/// J (2N x 2N, by columns) of its parts (N x N each), [angles angle_power; angle_power' powers], and whether all of it
+/// is finite.
+struct Assembly {
+  int N, lanes;
+  const double *angles, *angle_power, *powers;
+  double* J;
+  bool* is_finite;
+};
+void assemble_information(const Assembly& s);
+
 }  // namespace truebearing::kernels

@@ -116,20 +116,26 @@ void sort_targets(JointAngleState& state) {
   state = rearranged(state, state.targets(), [&](int n) { return order[static_cast<std::size_t>(n)]; });
 }
 
-bool JointAngleUpdate::run(const JointAngleState& prior, const RealInterval& interval, double middle_s,
-                           const SignalVector& start, const Options& options, JointAngleState& posterior) {
+bool JointAngleUpdate::take_prior(const JointAngleState& prior) {
   const int N = prior.targets(), n = 2 * N;
-  if (N == 0) {
-    posterior = prior;
-    log_evidence_ = 0.0;
-    return likelihood_.evaluate(interval, SignalVector(0), nullptr, middle_s, options.noise_power);
-  }
-  const SignalVector m0 = prior.x.head(n), rate = prior.x.tail(N);
+  if (N == 0) return true;
   Ut_ = prior.P.leftCols(n);
   Lt_.resize(n, n);
   bool is_positive_definite = false;
   kernels::prior_root(N, Ut_.data(), Lt_.data(), is_positive_definite);
-  if (!is_positive_definite) return false;
+  return is_positive_definite;
+}
+
+bool JointAngleUpdate::find_mode(const JointAngleState& prior, const RealInterval& interval, double middle_s,
+                                 const SignalVector& start, const Options& options) {
+  const int N = prior.targets(), n = 2 * N;
+  if (N == 0) {
+    m_.resize(0);
+    log_evidence_ = 0.0;
+    return likelihood_.evaluate(interval, SignalVector(0), nullptr, middle_s, options.noise_power);
+  }
+  const SignalVector m0 = prior.x.head(n), rate = prior.x.tail(N);
+  bool is_positive_definite = false;
   m_ = start;
   u_ = m_ - m0;  // u = L^-1 (m - m0)
   for (int j = 0; j < n; ++j) {
@@ -162,14 +168,24 @@ bool JointAngleUpdate::run(const JointAngleState& prior, const RealInterval& int
   }
 
   log_evidence_ = likelihood_.log_likelihood() - 0.5 * u_.squaredNorm() - 0.5 * log_determinant(B_);
+  return true;
+}
+
+bool JointAngleUpdate::give_posterior(const JointAngleState& prior, JointAngleState& posterior) {
+  const int N = prior.targets();
+  if (N == 0) {
+    posterior = prior;
+    return true;
+  }
   posterior.q = prior.q;
   posterior.innovations = prior.innovations;
   posterior.x = prior.x;
   posterior.P.resize(3 * N, 3 * N);
   Zt_ = Ut_;
-  kernels::take_posterior(
-      {N, Ut_.data(), B_.data(), u_.data(), prior.P.data(), Zt_.data(), posterior.x.data(), posterior.P.data()});
-  return posterior.x.allFinite() && posterior.P.allFinite();
+  bool is_finite = true;
+  kernels::take_posterior({N, Ut_.data(), B_.data(), u_.data(), prior.P.data(), Zt_.data(), posterior.x.data(),
+                           posterior.P.data(), &is_finite});
+  return is_finite;
 }
 
 EquivalentInnovation equivalent_innovation(const JointAngleState& prior, const JointAngleState& posterior, int n) {

@@ -70,7 +70,17 @@ class JointAngleUpdate {
   /// The posterior of `prior`, whose angles are those at middle_s from the end of the interval. Scoring starts at
   /// `start` = [theta, l] (2N). False where the arithmetic fails; the posterior is then not to be used.
   bool run(const JointAngleState& prior, const RealInterval& interval, double middle_s, const SignalVector& start,
-           const Options& options, JointAngleState& posterior);
+           const Options& options, JointAngleState& posterior) {
+    return take_prior(prior) && find_mode(prior, interval, middle_s, start, options) &&
+           give_posterior(prior, posterior);
+  }
+  /// The same in three steps. The first need not be repeated for another start, nor the last be taken for a mode that
+  /// nobody wants.
+  bool take_prior(const JointAngleState& prior);
+  bool find_mode(const JointAngleState& prior, const RealInterval& interval, double middle_s, const SignalVector& start,
+                 const Options& options);
+  const SignalVector& mode() const { return m_; }  ///< [theta, l] (2N)
+  bool give_posterior(const JointAngleState& prior, JointAngleState& posterior);
 
   /// Laplace's approximation of log p(interval | prior), at the mode that was found.
   double log_evidence() const { return log_evidence_; }

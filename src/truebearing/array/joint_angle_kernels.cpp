@@ -21,26 +21,33 @@ namespace {
 // faster than half of it.
 
 // A (rows x rows) = L D^-1 L' by its first n columns, which become those of L, D the diagonal of L: no square root
-// stands between one column and the next. By the way x = L^-1 y (n); of y (n) nothing is left. False where their square
-// part is not positive definite.
+// stands between one column and the next. Two columns, of an even number, are taken from the others together. By the
+// way x = L^-1 y (n); of y (n) nothing is left. False where their square part is not positive definite.
 template <int kWidth>
 [[gnu::always_inline]] inline bool factorise(int rows, int n, double* A, double* inverse, double* y, double* x) {
 #pragma GCC unroll 8
   for (int first = 0; first < n; first += kWidth)
-    for (int j = first; j < n && j < first + kWidth; ++j) {
+    for (int j = first; j < n && j < first + kWidth; j += 2) {
       const double* __restrict A_j = A + j * rows;
+      double* __restrict next = A + (j + 1) * rows;
       if (!(A_j[j] > 0.0)) return false;
       inverse[j] = 1.0 / A_j[j];
-      for (int k = j + 1; k < n; ++k) {
-        double* __restrict A_k = A + k * rows;
-        const double factor = A_j[k] * inverse[j];
+      const double of_next = A_j[j + 1] * inverse[j];
 #pragma omp simd
-        for (int i = first; i < rows; ++i) A_k[i] -= A_j[i] * factor;
+      for (int i = first; i < rows; ++i) next[i] -= A_j[i] * of_next;
+      if (!(next[j + 1] > 0.0)) return false;
+      inverse[j + 1] = 1.0 / next[j + 1];
+      for (int k = j + 2; k < n; ++k) {
+        double* __restrict A_k = A + k * rows;
+        const double factor = A_j[k] * inverse[j], factor_of_next = next[k] * inverse[j + 1];
+#pragma omp simd
+        for (int i = first; i < rows; ++i) A_k[i] = A_k[i] - A_j[i] * factor - next[i] * factor_of_next;
       }
       if (!y) continue;
       x[j] = y[j] * inverse[j];
+      x[j + 1] = (y[j + 1] - A_j[j + 1] * x[j]) * inverse[j + 1];
 #pragma omp simd
-      for (int i = first; i < n; ++i) y[i] -= A_j[i] * x[j];
+      for (int i = first; i < n; ++i) y[i] = y[i] - A_j[i] * x[j] - next[i] * x[j + 1];
     }
   return true;
 }
@@ -134,6 +141,12 @@ template <int kWidth>
     multiply<kWidth>(N, 0, n, s.Ut + n, rows, row, column);
     for (int i = 0; i < N; ++i) P_j[n + i] += s.P0[j * rows + n + i] - column[i];
   }
+  double rest = 0.0;  // no number where one of them is not finite
+#pragma omp simd reduction(+ : rest)
+  for (int i = 0; i < rows; ++i) rest += 0.0 * s.x[i];
+#pragma omp simd reduction(+ : rest)
+  for (int i = 0; i < rows * rows; ++i) rest += 0.0 * s.P[i];
+  *s.is_finite = rest == 0.0;
 }
 template <int kWidth>
 [[gnu::always_inline]] inline void take_posterior_loops(const Posterior& s) {

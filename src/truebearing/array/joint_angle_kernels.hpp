@@ -27,6 +27,7 @@ struct Posterior {
   int N;
   const double *Ut, *B, *u, *P0;
   double *Zt, *x, *P;
+  bool* is_finite;  // x and P
 };
 void take_posterior(const Posterior& s);
 

@@ -10,10 +10,10 @@
 
 namespace truebearing {
 
-SmoothingBank::SmoothingBank(std::unique_ptr<FilterBank> bank, double lag_s) : bank_(std::move(bank)), lag_s_(lag_s) {
+SmoothingBank::SmoothingBank(std::unique_ptr<FilterBank> bank, double lag_s)
+    : Smoother(bank->space()), bank_(std::move(bank)), lag_s_(lag_s) {
   if (!(lag_s_ > 0.0)) throw std::invalid_argument("a lag is above 0");
   for (std::size_t i = 0; i < bank_->filters().size(); ++i) backward_.emplace_back(*bank_->filters().state_of(i));
-  record_.space = &bank_->space();
 }
 
 std::unique_ptr<Tracker> SmoothingBank::fresh() const {
@@ -23,29 +23,8 @@ std::unique_ptr<Tracker> SmoothingBank::fresh() const {
 
 void SmoothingBank::reset() {
   bank_->reset();
-  foreseen_ = false;
+  forget();
   knots_.clear();
-  steps_.clear();
-  counted_.clear();
-  next_ = 0;
-  counts_ = {};
-  account_ = nullptr;
-}
-
-std::span<const StepRecord> SmoothingBank::step(const Measurement& measurement) {
-  account_ = nullptr;
-  if (!foreseen_) return bank_->step(measurement);
-  if (next_ >= steps_.size()) return {};
-  counts_ = counted_[next_];
-  const std::optional<Step>& step = steps_[next_++];
-  if (!step) return {};
-  account_ = &step->account;
-  record_.time_s = step->time_s;
-  record_.status = step->status;
-  record_.x = step->x;
-  record_.P = step->P;
-  record_.sensor = step->sensor;
-  return {&record_, 1};
 }
 
 void SmoothingBank::foresee(std::span<const Measurement> measurements) {
@@ -65,20 +44,9 @@ void SmoothingBank::foresee(std::span<const Measurement> measurements) {
     }
     begin = end;
   }
-  const Step* before = nullptr;
-  for (std::size_t k = 0; k < steps_.size(); ++k) {
-    if (!steps_[k]) continue;
-    Step& step = *steps_[k];
-    if (step.is_as_before && before) {
-      step.x = before->x;
-      step.P = before->P;
-      step.account = before->account;
-    } else if (sums[k].weight > 0.0) {
-      write(sums[k], step);
-    }
-    before = &step;
-  }
-  foreseen_ = true;
+  for (std::size_t k = 0; k < steps_.size(); ++k)
+    if (sums[k].weight > 0.0) write(sums[k], *steps_[k]);
+  begin_replay();
 }
 
 void SmoothingBank::add_knot() {
@@ -101,18 +69,10 @@ void SmoothingBank::add_knot() {
 
 void SmoothingBank::take(const Measurement& measurement) {
   const std::span<const StepRecord> records = bank_->step(measurement);
-  counted_.push_back(bank_->counts());
   if (bank_->has_used()) add_knot();
-  std::optional<Step>& step = steps_.emplace_back();
-  if (records.empty()) return;
+  Step* const step = add_step(records);
+  if (!step) return;
   const StepRecord& record = records.front();
-  step.emplace();
-  step->time_s = record.time_s;
-  step->status = record.status;
-  step->x = record.x;
-  step->P = record.P;
-  step->sensor = record.sensor;
-  step->account.filter_variance = record.P.diagonal();
   step->is_at_knot = bank_->has_used();
   step->is_as_before = record.status == StepStatus::rejected;
   step->can_look_back = !knots_.empty() && !step->is_as_before && record.status != StepStatus::failed;

@@ -24,15 +24,12 @@ class SmoothingBank final : public Smoother {
   /// lag_s > 0, infinite for the fixed interval.
   explicit SmoothingBank(std::unique_ptr<FilterBank> bank, double lag_s = kInfinity);
 
-  std::span<const StepRecord> step(const Measurement& measurement) override;
   void foresee(std::span<const Measurement> measurements) override;
   void reset() override;
   std::unique_ptr<Tracker> fresh() const override;
 
   const StateSpace& space() const override { return bank_->space(); }
   std::optional<Measured> measures() const override { return bank_->measures(); }
-  TrackerCounts counts() const override { return foreseen_ ? counts_ : bank_->counts(); }
-  const SmoothingAccount* account() const override { return account_; }
 
  private:
   // The members after a measurement, or as the bank began.
@@ -41,19 +38,6 @@ class SmoothingBank final : public Smoother {
     std::vector<double> filtered;  // x, P of each member, one after the other
     std::vector<double> weights;   // sum to 1
   };
-  // What its record will be.
-  struct Step {
-    double time_s = 0.0;
-    StepStatus status = StepStatus::ok;
-    BoundedVector x;
-    BoundedMatrix P;
-    std::optional<SensorState> sensor;
-    SmoothingAccount account;
-    std::size_t knot = 0;  // the last at or before it
-    bool is_at_knot = false;
-    bool is_as_before = false;  // a measurement that was not looked at: the step before stands
-    bool can_look_back = false;
-  };
   // Moments of the members about what the bank published.
   struct Sums {
     double weight = 0.0;
@@ -61,6 +45,8 @@ class SmoothingBank final : public Smoother {
     BoundedMatrix second;
   };
 
+  Tracker& filter() override { return *bank_; }
+  const Tracker& filter() const override { return *bank_; }
   void add_knot();
   void take(const Measurement& measurement);
   std::size_t last_knot_of(const Step& step) const;
@@ -73,14 +59,7 @@ class SmoothingBank final : public Smoother {
   std::unique_ptr<FilterBank> bank_;
   double lag_s_;
   std::vector<BackwardStep> backward_;  // of each member
-  bool foreseen_ = false;
   std::vector<Knot> knots_;
-  std::vector<std::optional<Step>> steps_;  // one per measurement; none before the bank has begun
-  std::vector<TrackerCounts> counted_;      // after each
-  std::size_t next_ = 0;                    // measurement
-  TrackerCounts counts_;
-  const SmoothingAccount* account_ = nullptr;
-  StepRecord record_;
 };
 
 }  // namespace truebearing

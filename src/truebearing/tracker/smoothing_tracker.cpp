@@ -9,13 +9,12 @@
 namespace truebearing {
 
 SmoothingTracker::SmoothingTracker(std::unique_ptr<FilterTracker> filter, double lag_s)
-    : filter_(std::move(filter)), lag_s_(lag_s), backward_(filter_->state()) {
+    : Smoother(filter->space()), filter_(std::move(filter)), lag_s_(lag_s), backward_(filter_->state()) {
   if (filter_->options().output_pull > 0.0 || filter_->options().ahead_s > 0.0)
     throw std::invalid_argument("a smoother is of what a filter estimates, without output_pull or ahead_s");
   if (!(lag_s_ > 0.0)) throw std::invalid_argument("a lag is above 0");
   for (const ModeEstimate& mode : estimates_of(filter_->state()).modes)
     lengths_.push_back(static_cast<int>(mode.x.size()));
-  record_.space = &filter_->space();
 }
 
 std::unique_ptr<Tracker> SmoothingTracker::fresh() const {
@@ -26,32 +25,8 @@ std::unique_ptr<Tracker> SmoothingTracker::fresh() const {
 
 void SmoothingTracker::reset() {
   filter_->reset();
-  foreseen_ = false;
+  forget();
   knots_.clear();
-  steps_.clear();
-  counted_.clear();
-  next_ = 0;
-  counts_ = {};
-  account_ = nullptr;
-}
-
-std::span<const StepRecord> SmoothingTracker::step(const Measurement& measurement) {
-  account_ = nullptr;
-  if (!foreseen_) return filter_->step(measurement);
-  if (next_ >= steps_.size()) return {};
-  counts_ = counted_[next_];
-  const std::optional<Step>& step = steps_[next_++];
-  if (!step) return {};
-  account_ = &step->account;
-  record_.track = step->track;
-  record_.source = step->source;
-  record_.time_s = step->time_s;
-  record_.status = step->status;
-  record_.x = step->x;
-  record_.P = step->P;
-  record_.sensor = step->sensor;
-  if (step->mu.size() > 0) record_.mode_probabilities = step->mu;
-  return {&record_, 1};
 }
 
 void SmoothingTracker::foresee(std::span<const Measurement> measurements) {
@@ -63,18 +38,7 @@ void SmoothingTracker::foresee(std::span<const Measurement> measurements) {
     for (std::optional<Step>& step : steps_)
       if (step && step->can_look_back) smooth_with_lag(*step);
   }
-  const Step* before = nullptr;
-  for (std::optional<Step>& step : steps_) {
-    if (!step) continue;
-    if (step->is_as_before && before) {
-      step->x = before->x;
-      step->P = before->P;
-      step->mu = before->mu;
-      step->account = before->account;
-    }
-    before = &*step;
-  }
-  foreseen_ = true;
+  begin_replay();
 }
 
 void SmoothingTracker::add_knot(double time_s, bool begins, double widened) {
@@ -102,25 +66,14 @@ void SmoothingTracker::take(const Measurement& measurement) {
   // A track that begins with a prior has a state before its first measurement.
   if (knots_.empty() && !filter_->is_lost()) add_knot(filter_->used_time_s(), true, 1.0);
   const std::span<const StepRecord> records = filter_->step(measurement);
-  counted_.push_back(filter_->counts());
   const FilterTracker::Passage& passage = filter_->passage();
   if (passage.used)
     add_knot(filter_->used_time_s(), passage.begins, passage.widened);
   else if (passage.begins && !filter_->is_lost())  // and then did not use the measurement
     add_knot(filter_->used_time_s(), true, 1.0);
-  std::optional<Step>& step = steps_.emplace_back();
-  if (records.empty()) return;
+  Step* const step = add_step(records);
+  if (!step) return;
   const StepRecord& record = records.front();
-  step.emplace();
-  step->track = record.track;
-  step->source = record.source;
-  step->time_s = record.time_s;
-  step->status = record.status;
-  step->x = record.x;
-  step->P = record.P;
-  if (record.mode_probabilities) step->mu = *record.mode_probabilities;
-  step->sensor = record.sensor;
-  step->account.filter_variance = record.P.diagonal();
   if (record.innovation) {
     step->account.nis = record.innovation->nis;
     step->account.measured = static_cast<int>(record.innovation->nu.size());

@@ -28,7 +28,6 @@ class SmoothingTracker final : public Smoother {
   /// than its estimate: with output_pull or ahead_s.
   explicit SmoothingTracker(std::unique_ptr<FilterTracker> filter, double lag_s = kInfinity);
 
-  std::span<const StepRecord> step(const Measurement& measurement) override;
   void foresee(std::span<const Measurement> measurements) override;
   void reset() override;
   std::unique_ptr<Tracker> fresh() const override;
@@ -36,9 +35,6 @@ class SmoothingTracker final : public Smoother {
   const StateSpace& space() const override { return filter_->space(); }
   std::optional<Measured> measures() const override { return filter_->measures(); }
   RecordBlocks blocks() const override { return {.mode_probabilities = filter_->blocks().mode_probabilities}; }
-  TrackerCounts counts() const override { return foreseen_ ? counts_ : filter_->counts(); }
-
-  const SmoothingAccount* account() const override { return account_; }
 
  private:
   // An estimate after a measurement, or that a track began with. Kept small: a log may be long.
@@ -49,22 +45,9 @@ class SmoothingTracker final : public Smoother {
     bool begins;  // goes on from no knot before
     double widened;
   };
-  // What its record will be.
-  struct Step {
-    int track = 0, source = 0;
-    double time_s = 0.0;
-    StepStatus status = StepStatus::ok;
-    BoundedVector x;
-    BoundedMatrix P;
-    ModeVector mu;  // empty of a single filter
-    std::optional<SensorState> sensor;
-    SmoothingAccount account;
-    std::size_t knot = 0;  // the last at or before it
-    bool is_at_knot = false;
-    bool is_as_before = false;  // a measurement that was not looked at: the step before stands
-    bool can_look_back = false;
-  };
 
+  Tracker& filter() override { return *filter_; }
+  const Tracker& filter() const override { return *filter_; }
   void take(const Measurement& measurement);
   void add_knot(double time_s, bool begins, double widened);
   void smooth_interval();
@@ -79,14 +62,7 @@ class SmoothingTracker final : public Smoother {
   double lag_s_;
   BackwardStep backward_;
   std::vector<int> lengths_;  // of the modes' states
-  bool foreseen_ = false;
   std::vector<Knot> knots_;
-  std::vector<std::optional<Step>> steps_;  // one per measurement; none before a track exists
-  std::vector<TrackerCounts> counted_;      // after each
-  std::size_t next_ = 0;                    // measurement
-  TrackerCounts counts_;
-  const SmoothingAccount* account_ = nullptr;
-  StepRecord record_;
 };
 
 }  // namespace truebearing

@@ -32,7 +32,7 @@ TEST(ErasedMotion, IsTheModelThatItHolds) {
   EXPECT_EQ(motion->f(x, 0.5), product(turn.F(0.5), x));
 }
 
-// A filter under the model and one under the interface do the same, to the bit.
+// A filter under the model and one under the interface do the same, to the bit, whatever the interval before was.
 template <typename Motion>
 void expect_same_prediction(const Motion& model) {
   constexpr int N = Motion::kStates;
@@ -41,11 +41,16 @@ void expect_same_prediction(const Motion& model) {
   for (int i = 0; i < N; ++i) x(i) = 0.1 * (i + 1);
   Filter direct(x, some_covariance<N>()), through(x, some_covariance<N>());
   const std::shared_ptr<const SizedMotion<N>> motion = erased(model);
-  for (int k = 0; k < 5; ++k) {
-    ASSERT_EQ(direct.predict(model, 0.7), StepStatus::ok);
-    ASSERT_EQ(through.predict(*motion, 0.7), StepStatus::ok);
+  Filter remembering = through;
+  Transition<N> made;
+  for (const double dt_s : {0.7, 0.7, 1.3, 0.7, 0.0, 0.7}) {
+    ASSERT_EQ(direct.predict(model, dt_s), StepStatus::ok);
+    ASSERT_EQ(through.predict(*motion, dt_s), StepStatus::ok);
+    ASSERT_EQ(remembering.predict(*motion, dt_s, made), StepStatus::ok);
     EXPECT_EQ(through.x(), direct.x());
     EXPECT_EQ(through.P(), direct.P());
+    EXPECT_EQ(remembering.x(), direct.x());
+    EXPECT_EQ(remembering.P(), direct.P());
   }
 }
 
@@ -58,8 +63,12 @@ TEST(ErasedMotion, OfNoCovarianceFailsAndLeavesTheEstimate) {
   const auto motion = erased(Turn{{2.0}, 0.1});
   const Eigen::Vector4d x(1.0, 2.0, 3.0, 4.0);
   KalmanFilter<4> filter(x, Eigen::Matrix4d::Identity());
-  EXPECT_EQ(filter.predict(*motion, std::nan("")), StepStatus::failed);
-  EXPECT_EQ(filter.x(), x);
+  Transition<4> made;
+  for (int twice = 0; twice < 2; ++twice) {
+    EXPECT_EQ(filter.predict(*motion, std::nan(""), made), StepStatus::failed);
+    EXPECT_EQ(filter.x(), x);
+  }
+  EXPECT_EQ(filter.predict(*motion, 1.0, made), StepStatus::ok);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "truebearing/core/bounded.hpp"
+#include "truebearing/filter/product.hpp"
 #include "truebearing/filter/small_matrix.hpp"
 #include "truebearing/measurement/measurement_model.hpp"
 
@@ -82,8 +83,8 @@ class ErasedMeasurement final : public SizedMeasurement<Model::kMeasurements> {
     model_ = model;
     this->z = value;
     const typename SizedMeasurement<M>::Covariance variances = model.R();
-    for (int i = 0; i < M * M; ++i)
-      this->R.data()[i] = variances.data()[i];  // not by pairs what was written one by one
+    // Written out: as a loop it would read by pairs what was written number by number.
+    detail::each<M * M, M * M>([&](int i) __attribute__((always_inline)) { this->R.data()[i] = variances.data()[i]; });
   }
 
   Vector h(const double* x) const override { return model_->h(state(x)); }

@@ -48,7 +48,7 @@ struct CovarianceForm {
                                           Eigen::Matrix<Scalar, N, N>& P) {
     const Eigen::Matrix<Scalar, N, N> FP = product(F, P);
     copy(Q, P);
-    add_product<1, Part::lower>(FP, transposed(F), P);
+    add_product_transposed<1, Part::lower>(FP, F, P);
     mirror_lower<N, Scalar>(P);
     return is_positive_semidefinite<N, Scalar>(P);
   }
@@ -56,8 +56,8 @@ struct CovarianceForm {
   /// predict() across a motion whose type is not known here. x becomes f(x); `failed` leaves both as they were.
   template <int N>
   static StepStatus across(const SizedMotion<N>& motion, double dt_s, Eigen::Matrix<double, N, 1>& x,
-                           Eigen::Matrix<double, N, N>& P) {
-    return motion.carry(dt_s, x, P);
+                           Eigen::Matrix<double, N, N>& P, Transition<N>& made) {
+    return motion.carry(dt_s, x, P, made);
   }
 
   /// S, K and NIS; PHt = P H' (n x m). False where R is not positive semi-definite, or where S has lost its digits:

@@ -34,20 +34,33 @@ class ErasedMotion final : public SizedMotion<Model::kStates> {
   Matrix F(const State& x, double dt_s) const override { return jacobian(x, dt_s); }
   Matrix Q(double dt_s) const override { return model_.Q(dt_s); }
 
-  StepStatus carry(double dt_s, State& x, Matrix& P) const override {
-    const Matrix Q = model_.Q(dt_s);  // first: it is written number by number, and read by pairs
-    const Matrix F = jacobian(x, dt_s);
+  StepStatus carry(double dt_s, State& x, Matrix& P, Transition<N>& made) const override {
+    if (made.dt_s != dt_s) make(dt_s, made);
+    const Matrix structure = jacobian(x, dt_s);  // of a linear model for its zeros alone
+    Matrix F;
+    detail::each<N * N, N * N>([&](int i) __attribute__((always_inline)) {
+      if constexpr (LinearMotionModel<Model>)
+        F.data()[i] = detail::is_known_zero(structure.data()[i]) ? 0.0 : made.F.data()[i];
+      else
+        F.data()[i] = structure.data()[i];
+    });
     State new_x;
     if constexpr (LinearMotionModel<Model>)
       new_x = product(F, x);
     else
       new_x = model_.f(x, dt_s);
     Matrix new_P = P;
-    const bool valid = detail::CovarianceForm::predict<N, double>(F, Q, new_P);
+    const bool valid = detail::CovarianceForm::predict<N, double>(F, made.Q, new_P);
     return commit(valid, new_x, new_P, x, P);
   }
 
  private:
+  [[gnu::noinline]] void make(double dt_s, Transition<N>& made) const {
+    made.dt_s = dt_s;
+    if constexpr (LinearMotionModel<Model>) made.F = model_.F(dt_s);
+    made.Q = model_.Q(dt_s);
+  }
+
   EIGEN_ALWAYS_INLINE Matrix jacobian(const State& x, double dt_s) const {
     if constexpr (LinearMotionModel<Model>)
       return model_.F(dt_s);

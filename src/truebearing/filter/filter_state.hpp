@@ -98,7 +98,7 @@ class FilterState final : public TrackedState {
   }
 
   StepStatus predict(double dt_s) override {
-    const StepStatus status = filter_.predict(*motion_, dt_s);
+    const StepStatus status = filter_.predict(*motion_, dt_s, made_);
     show();
     return status;
   }
@@ -146,6 +146,7 @@ class FilterState final : public TrackedState {
 
   struct None {};
   std::shared_ptr<const Motion> motion_;
+  Transition<N> made_;
   Filter filter_;
   [[no_unique_address]] std::conditional_t<kCarriesP, None, Covariance> shown_P_;
 };

@@ -58,7 +58,13 @@ class KalmanFilter {
 
   /// The same across a motion whose type is not known here: it carries the estimate itself, where Form carries P.
   StepStatus predict(const SizedMotion<N>& motion, double dt_s) requires std::is_same_v<Scalar, double> {
-    return Form::template across<N>(motion, dt_s, x_, carried_);
+    Transition<N> made;
+    return predict(motion, dt_s, made);
+  }
+  /// made: by this motion, or nothing yet; becomes that of dt_s.
+  StepStatus predict(const SizedMotion<N>& motion, double dt_s,
+                     Transition<N>& made) requires std::is_same_v<Scalar, double> {
+    return Form::template across<N>(motion, dt_s, x_, carried_, made);
   }
 
   /// Takes one measurement z (m). `failed` leaves x and P as they were: z, R or the result not finite, R, S or P not

@@ -31,9 +31,9 @@ class LogPolarFilter {
   /// As KalmanFilter's: where P0 is not positive semi-definite P() is NaN and every step says `failed`.
   LogPolarFilter(const State& x0, const Covariance& P0) : filter_(x0, P0) {}
 
-  template <MotionModel Motion>
-  StepStatus predict(const Motion& motion, Scalar dt_s) {
-    return filter_.predict(motion, dt_s);
+  template <MotionModel Motion, typename... Made>
+  StepStatus predict(const Motion& motion, Scalar dt_s, Made&... made) {
+    return filter_.predict(motion, dt_s, made...);
   }
 
   /// `failed`, which leaves x and P as they were, as in KalmanFilter; where the target is predicted at the sensor; and

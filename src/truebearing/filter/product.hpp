@@ -75,6 +75,20 @@ EIGEN_ALWAYS_INLINE void add_product(const Eigen::Matrix<Scalar, Rows, Inner>& A
   });
 }
 
+/// C + Sign A B' into C: what is known of B's coefficients stays known, which it would not in a transposed copy.
+template <int Sign, Part part = Part::all, typename Scalar, int Rows, int Inner, int Cols>
+EIGEN_ALWAYS_INLINE void add_product_transposed(const Eigen::Matrix<Scalar, Rows, Inner>& A,
+                                                const Eigen::Matrix<Scalar, Cols, Inner>& B,
+                                                Eigen::Matrix<Scalar, Rows, Cols>& C) {
+  detail::each<Rows * Cols, Rows * Inner * Cols>([&](int index) __attribute__((always_inline)) {
+    const int i = index % Rows, j = index / Rows;
+    if (part == Part::lower && i < j) return;
+    detail::each<Inner, Rows * Inner * Cols>([&](int k) __attribute__((always_inline)) {
+      if (!detail::is_known_zero(A(i, k)) && !detail::is_known_zero(B(j, k))) C(i, j) += Sign * (A(i, k) * B(j, k));
+    });
+  });
+}
+
 /// A B.
 template <typename Scalar, int Rows, int Inner, int Cols>
 EIGEN_ALWAYS_INLINE Eigen::Matrix<Scalar, Rows, Cols> product(const Eigen::Matrix<Scalar, Rows, Inner>& A,

@@ -55,7 +55,7 @@ struct SquareRoot {
   /// predict() across a motion whose type is not known here. x becomes f(x); `failed` leaves both as they were.
   template <int N>
   static StepStatus across(const SizedMotion<N>& motion, double dt_s, Eigen::Matrix<double, N, 1>& x,
-                           Eigen::Matrix<double, N, N>& U) {
+                           Eigen::Matrix<double, N, N>& U, Transition<N>&) {
     Eigen::Matrix<double, N, N> new_U = U;
     const bool valid = predict<N, double>(motion.F(x, dt_s), motion.Q(dt_s), new_U);
     return commit<double, N>(valid, motion.f(x, dt_s), new_U, x, U);

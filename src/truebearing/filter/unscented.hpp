@@ -72,8 +72,14 @@ class UnscentedKalmanFilter {
 
   /// The same across a motion whose type is not known here.
   StepStatus predict(const SizedMotion<N>& motion, double dt_s) requires std::is_same_v<Scalar, double> {
+    Transition<N> made;
+    return predict(motion, dt_s, made);
+  }
+  /// made: by this motion, or nothing yet; becomes that of dt_s.
+  StepStatus predict(const SizedMotion<N>& motion, double dt_s,
+                     Transition<N>& made) requires std::is_same_v<Scalar, double> {
     if (!motion.is_linear()) return predict<SizedMotion<N>>(motion, dt_s);
-    return motion.carry(dt_s, x_, P_);
+    return motion.carry(dt_s, x_, P_, made);
   }
 
   /// Cov(x, f(x)) across a nonlinear motion (n x n), through the points: what a smoother looks back by.

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <string_view>
 
 #include "truebearing/core/status.hpp"
@@ -34,6 +35,14 @@ class AnyMotion {
   std::string_view rest_;
 };
 
+/// What a motion model gave for one dt, kept by those who cross the same dt again and again.
+template <int N>
+struct Transition {
+  double dt_s = std::numeric_limits<double>::quiet_NaN();  ///< NaN: nothing yet
+  Eigen::Matrix<double, N, N> F;                           ///< of a linear model alone
+  Eigen::Matrix<double, N, N> Q;
+};
+
 /// A motion model of N states (motion_model.hpp).
 template <int N>
 class SizedMotion : public AnyMotion {
@@ -48,7 +57,8 @@ class SizedMotion : public AnyMotion {
   virtual Matrix Q(double dt_s) const = 0;
 
   /// x = f(x, dt), P = F P F' + Q. `failed`, where x is then not finite or P no covariance, leaves both as they were.
-  virtual StepStatus carry(double dt_s, State& x, Matrix& P) const = 0;
+  /// made: by this motion, or nothing yet; becomes that of dt.
+  virtual StepStatus carry(double dt_s, State& x, Matrix& P, Transition<N>& made) const = 0;
 
  protected:
   SizedMotion(bool is_linear, std::string_view rest) : AnyMotion(N, is_linear, rest) {}

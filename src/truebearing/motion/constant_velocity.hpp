@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <utility>
 
 #include "truebearing/motion/motion_model.hpp"
 #include "truebearing/motion/process_noise.hpp"
@@ -20,7 +21,11 @@ struct ConstantVelocity {
 
   Matrix F(Scalar dt_s) const {
     Matrix transition = Matrix::Identity();
-    for (int i = 0; i < Dim; ++i) transition(i, Dim + i) = dt_s;
+    // Written out: of a loop's result the zeros would not be known where it is multiplied (filter/product.hpp).
+    [&]<int... I>(std::integer_sequence<int, I...>) __attribute__((always_inline)) {
+      ((transition(I, Dim + I) = dt_s), ...);
+    }
+    (std::make_integer_sequence<int, Dim>());
     return transition;
   }
 

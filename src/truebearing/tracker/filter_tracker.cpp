@@ -20,19 +20,41 @@ constexpr int kFailedInRow = 3;
 // Whether x (N), P (N x N) are a track at a place that a target can have, known better than not at all; the first
 // `positions` components are its place. Written for few instructions: every step asks twice.
 template <int N>
-bool is_sensible(const double* x, const double* P, int positions) {
-  double sums[static_cast<std::size_t>(N > 0 ? N : 1)];  // not finite where a number is not; several, for none to wait
-  for (int i = 0; i < N; ++i) sums[i] = x[i];
-  for (int j = 0; j < N; ++j)
-    for (int i = 0; i < N; ++i) sums[i] += P[i + j * N];
-  double sum = 0.0;
-  for (int i = 0; i < N; ++i) sum += sums[i];
-  double least_variance = P[0];
-  for (int i = 1; i < N; ++i) least_variance = std::min(least_variance, P[i * (N + 1)]);
-  bool sensible = std::isfinite(sum) & (least_variance >= 0.0);
+EIGEN_ALWAYS_INLINE bool is_sensible(const Eigen::Matrix<double, N, 1>& x, const Eigen::Matrix<double, N, N>& P,
+                                     int positions) {
+  Eigen::Matrix<double, N, 1> sums = x;  // not finite where a number is not; several, for none to wait
+  for (int j = 0; j < N; ++j) sums += P.col(j);
+  double least_variance = P(0, 0);
+  for (int i = 1; i < N; ++i) least_variance = std::min(least_variance, P(i, i));
+  bool sensible = std::isfinite(sums.sum()) & (least_variance >= 0.0);
   for (int i = 0; i < positions; ++i)
-    sensible &= (std::abs(x[i]) <= kFarthest_m) & (P[i * (N + 1)] <= kFarthest_m * kFarthest_m);
+    sensible &= (std::abs(x(i)) <= kFarthest_m) & (P(i, i) <= kFarthest_m * kFarthest_m);
   return sensible;
+}
+
+// The first n of N components into x (n), P (n x n). False where it is no track (is_sensible()).
+template <int N>
+[[gnu::noinline]] bool copy_first(const double* from_x, const double* from_P, int n, BoundedVector& x,
+                                  BoundedMatrix& P) {
+  const Eigen::Map<const Eigen::Matrix<double, N, 1>> whole_x(from_x);
+  const Eigen::Map<const Eigen::Matrix<double, N, N>> whole_P(from_P);
+  x = whole_x.head(n);
+  P = whole_P.topLeftCorner(n, n);
+  return is_sensible<N>(whole_x, whole_P, n / 2);
+}
+
+// All of them. They are read once: after that the compiler could not know that x and P are elsewhere.
+template <int N>
+EIGEN_ALWAYS_INLINE bool copy_whole(const double* from_x, const double* from_P, BoundedVector& x, BoundedMatrix& P) {
+  using Vector = Eigen::Matrix<double, N, 1>;
+  using Matrix = Eigen::Matrix<double, N, N>;
+  const Vector whole_x = Eigen::Map<const Vector>(from_x);
+  const Matrix whole_P = Eigen::Map<const Matrix>(from_P);
+  x.resize(N);
+  P.resize(N, N);
+  Eigen::Map<Vector>(x.data()) = whole_x;
+  Eigen::Map<Matrix>(P.data()) = whole_P;
+  return is_sensible<N>(whole_x, whole_P, N / 2);
 }
 
 }  // namespace
@@ -343,19 +365,8 @@ bool FilterTracker::copy_published(const double* from_x, const double* from_P, B
                                    BoundedMatrix& P) const {
   const int n = space_->size();
   bool sensible = true;
-  x.resize(n);
-  P.resize(n, n);
   with_count(state_->size(), [&]<int N>(std::integral_constant<int, N>) {
-    using Vector = Eigen::Matrix<double, N, 1>;
-    using Matrix = Eigen::Matrix<double, N, N>;
-    sensible = is_sensible<N>(from_x, from_P, n / 2);
-    if (n == N) {
-      Eigen::Map<Vector>(x.data()) = Eigen::Map<const Vector>(from_x);
-      Eigen::Map<Matrix>(P.data()) = Eigen::Map<const Matrix>(from_P);
-    } else {
-      x = Eigen::Map<const Vector>(from_x).head(n);
-      P = Eigen::Map<const Matrix>(from_P).topLeftCorner(n, n);
-    }
+    sensible = n == N ? copy_whole<N>(from_x, from_P, x, P) : copy_first<N>(from_x, from_P, n, x, P);
   });
   return sensible;
 }

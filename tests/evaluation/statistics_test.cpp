@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "truebearing/core/constants.hpp"
 #include "truebearing/core/random.hpp"
 
 namespace truebearing::statistics_test {
@@ -47,6 +50,35 @@ TEST(Statistics, FiguresByHand) {
   EXPECT_DOUBLE_EQ(standard_deviation_of({1.0, 2.0, 6.0}).value, std::sqrt(7.0));
   EXPECT_DOUBLE_EQ(median_of({9.0, 1.0, 2.0}), 2.0);
   EXPECT_DOUBLE_EQ(median_of({9.0, 1.0, 2.0, 4.0}), 3.0);
+}
+
+void expect_places(const std::vector<double>& values, const std::string& what) {
+  std::vector<double> ascending = values;
+  std::sort(ascending.begin(), ascending.end());
+  const std::size_t last = values.size() - 1;
+  for (const std::size_t place : {std::size_t{0}, last / 10, last / 2, last - 1}) {
+    EXPECT_EQ(middle_of(values, place, place), ascending[place]) << what << ", place " << place;
+    EXPECT_EQ(middle_of(values, place, place + 1), 0.5 * (ascending[place + 1] + ascending[place])) << what;
+  }
+  EXPECT_EQ(middle_of(values, last, last), ascending[last]) << what;
+  EXPECT_EQ(median_of(values), 0.5 * (ascending[values.size() / 2] + ascending[last / 2])) << what;
+}
+
+// So many that a sample tells where to look, and one less.
+TEST(Statistics, PlacesOfManyAreThoseOfTheirOrder) {
+  constexpr std::size_t kSample = 4096;
+  for (const std::size_t count : {16 * kSample - 1, 16 * kSample, 20 * kSample + 17}) {
+    std::vector<double> values = random_values(count);
+    expect_places(values, "any order");
+    std::vector<double> misleading = values;
+    for (std::size_t i = 0; i < kSample; ++i) misleading[i * (count / kSample)] = 100.0;
+    expect_places(misleading, "a sample that is beside the middle");
+    for (double& value : values) value = std::round(2.0 * value);
+    expect_places(values, "many equal ones");
+    values[0] = values[7] = kInfinity;
+    std::sort(values.begin(), values.end());
+    expect_places(values, "in order");
+  }
 }
 
 TEST(Statistics, StandardErrorsAreTheJackknife) {

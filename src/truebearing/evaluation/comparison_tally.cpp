@@ -80,7 +80,7 @@ void ComparisonTally::exchange(TallyStream& stream) {
 std::string ComparisonTally::bytes(bool compact) {
   TallyStream stream(compact);
   exchange(stream);
-  return stream.written();
+  return std::move(stream).written();
 }
 
 void ComparisonTally::add(std::string_view bytes) {

@@ -65,8 +65,10 @@ void MedianOf::add(std::span<const double> values) {
       if (is_number(value)) add(value);
     return;
   }
-  const std::size_t before = values_.size();
-  values_.resize(before + values.size());
+  const std::size_t before = values_.size(), size = before + values.size();
+  // Much at once: what has never been written takes no memory, and a copy of what has been takes time.
+  if (size > values_.capacity()) values_.reserve(std::min(32 * size, kept_apart_));
+  values_.resize(size);
   const auto first = values_.begin() + static_cast<std::ptrdiff_t>(before);
   values_.erase(std::copy_if(values.begin(), values.end(), first, is_number), values_.end());
   count_ += values_.size() - before;
@@ -97,12 +99,7 @@ void MedianOf::narrow() {
 double MedianOf::value() const {
   if (bins_.empty()) return median_of(values_);
   const std::size_t upper = count_ / 2, lower = (count_ - 1) / 2;
-  if (lower >= below_ && upper - below_ < values_.size()) {
-    std::vector<double> values = values_;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(upper - below_);
-    std::nth_element(values.begin(), middle, values.end());
-    return lower == upper ? *middle : 0.5 * (*middle + *std::max_element(values.begin(), middle));
-  }
+  if (lower >= below_ && upper - below_ < values_.size()) return middle_of(values_, lower - below_, upper - below_);
   // The value at half of the way through, as if those of a bin lay evenly in it.
   double left = 0.5 * static_cast<double>(count_);
   for (std::size_t bin = 0; bin < bins_.size(); ++bin) {

@@ -3,6 +3,7 @@
 // standard errors. What cannot be said of so few values is NaN.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 namespace truebearing {
@@ -47,6 +48,8 @@ Estimate share_of(double ones, double count);
 /// Of independent values, the standard deviation, about the mean, over n - 1; its standard error is the jackknife.
 Estimate standard_deviation_of(const std::vector<double>& values);
 /// The middle; of an even number the mean of the two in the middle.
-double median_of(std::vector<double> values);
+double median_of(const std::vector<double>& values);
+/// The same of the places `lower` and `upper` of their ascending order, counted from 0, which are one or neighbours.
+double middle_of(const std::vector<double>& values, std::size_t lower, std::size_t upper);
 
 }  // namespace truebearing

@@ -11,6 +11,7 @@
 #include <string>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace truebearing {
@@ -24,7 +25,8 @@ class TallyStream {
 
   bool writes() const { return writes_; }
   bool compact() const { return compact_; }
-  const std::string& written() const { return bytes_; }
+  const std::string& written() const& { return bytes_; }
+  std::string written() && { return std::move(bytes_); }
   /// Throws InputError where bytes are left that no sum has taken.
   void finish() const;
 

@@ -33,6 +33,8 @@ struct RunScore {
   std::vector<std::shared_ptr<const RunFigures>> figures;  ///< of ScoringRule::families, of those that keep any
 
   std::size_t steps() const { return error.empty() ? 0 : error.front().size() / targets; }
+  /// Place in the recording's phases, -1 where it tells none.
+  int phase_at(std::size_t place) const { return place < phase.size() ? phase[place] : -1; }
 
   /// Those figures that are of a type; nullptr where there are none.
   template <typename Figures>

@@ -40,23 +40,48 @@ const QuantitySummary* TrackerSummary::quantity(const std::string& quantity_name
   return nullptr;
 }
 
-void SummaryTally::QuantityTally::add(const RunScore& run, std::size_t quantity, double nees95) {
+namespace {
+
+// How many of the values are numbers, and how many of those are no greater than a limit.
+struct Covered {
+  double covered, count;
+
+  Covered(const std::vector<double>& values, double limit) {
+    long below = 0, numbers = 0;
+    for (const double value : values) {
+      below += value <= limit;
+      numbers += !std::isnan(value);
+    }
+    covered = static_cast<double>(below);
+    count = static_cast<double>(numbers);
+  }
+};
+
+}  // namespace
+
+SquaredErrors SummaryTally::QuantityTally::add(const RunScore& run, std::size_t quantity, std::size_t phases_of_run,
+                                               double nees95) {
   const std::vector<double>& errors = run.error[quantity];
-  runs.add(squared_errors(run, quantity));
-  steps.resize(std::max(steps.size(), run.steps()));
   median.add(errors);
+  steps.resize(std::max(steps.size(), run.steps()));
+  phases.resize(std::max(phases.size(), phases_of_run));
+  SquaredErrors all;
+  std::vector<SquaredErrors> of_phases(phases.size());
   for (std::size_t first = 0; first < errors.size(); first += run.steps())  // of each target
     for (std::size_t step = 0; step < run.steps(); ++step) {
-      if (!std::isnan(errors[first + step])) steps[step].add(errors[first + step]);
+      const double error = errors[first + step];
+      if (std::isnan(error)) continue;
+      all.add(error);
+      steps[step].add(error);
+      if (const int phase = run.phase_at(first + step); phase >= 0)
+        of_phases[static_cast<std::size_t>(phase)].add(error);
     }
-  phases.resize(std::max(phases.size(), static_cast<std::size_t>(phase_count({&run}))));
-  for (std::size_t phase = 0; phase < phases.size(); ++phase)
-    phases[phase].add(squared_errors_in(run, quantity, static_cast<int>(phase)));
-  for (const double nees : run.quantity_nees[quantity]) {
-    if (std::isnan(nees)) continue;
-    covered += nees <= nees95 ? 1.0 : 0.0;
-    count += 1.0;
-  }
+  runs.add(all);
+  for (std::size_t phase = 0; phase < phases.size(); ++phase) phases[phase].add(of_phases[phase]);
+  const Covered inside(run.quantity_nees[quantity], nees95);
+  covered += inside.covered;
+  count += inside.count;
+  return all;
 }
 
 SummaryTally::SummaryTally(std::string name, const Scorer& scorer, const ScoringRule& rule, std::size_t kept_apart)
@@ -66,19 +91,20 @@ SummaryTally::SummaryTally(std::string name, const Scorer& scorer, const Scoring
       quantities_(scorer.quantities().size(), QuantityTally(kept_apart)) {}
 
 void SummaryTally::add_consistency(const RunScore& run) {
-  for (const double nees : run.nees) {
-    if (std::isnan(nees)) continue;
-    nees_sum_ += nees;
-    covered_ += nees <= scorer_.nees95() ? 1.0 : 0.0;
-    count_ += 1.0;
-  }
+  for (const double nees : run.nees)
+    if (!std::isnan(nees)) nees_sum_ += nees;
+  const Covered inside(run.nees, scorer_.nees95());
+  covered_ += inside.covered;
+  count_ += inside.count;
 }
 
 void SummaryTally::add(const RunScore& run) {
-  for (std::size_t q = 0; q < quantities_.size(); ++q) quantities_[q].add(run, q, scorer_.nees95(q));
+  const auto phases = static_cast<std::size_t>(phase_count({&run}));
+  for (std::size_t q = 0; q < quantities_.size(); ++q) {
+    const SquaredErrors errors = quantities_[q].add(run, q, phases, scorer_.nees95(q));
+    if (q == 0) scored_steps_ += static_cast<long>(errors.count);
+  }
   add_consistency(run);
-  if (!run.error.empty())
-    scored_steps_ += std::count_if(run.error[0].begin(), run.error[0].end(), [](double e) { return !std::isnan(e); });
   corrected_steps_ += run.corrected;
   gate_sum_ += run.gate_sum;
   limited_ += run.gate_limited;

@@ -56,7 +56,8 @@ class SummaryTally {
  private:
   struct QuantityTally {
     explicit QuantityTally(std::size_t kept_apart) : median(kept_apart) {}
-    void add(const RunScore& run, std::size_t quantity, double nees95);
+    /// Gives the errors of the run.
+    SquaredErrors add(const RunScore& run, std::size_t quantity, std::size_t phases_of_run, double nees95);
     void exchange(TallyStream& stream);
 
     RunErrors runs;

@@ -28,15 +28,22 @@ StepRecord record(const BoundedVector& x, const BoundedVector& variance) {
   return made;
 }
 
+RunScore score_of_step(const Scorer& scorer, const BoundedVector& truth, const StepRecord& made) {
+  RunScore score;
+  scorer.prepare(score, 1);
+  StepColumns columns(scorer.dimension());
+  scorer.score_step(truth, made, 0, columns, score);
+  scorer.score_together(columns, score);
+  return score;
+}
+
 TEST(Scorer, FindsComponentsByNameNotByPlace) {
   const StateSpace& estimate = state_space_of_components({"velocity_mps", "bias_m", "position_m"});
   const Scorer scorer(line_space(), estimate);
   EXPECT_THAT(scorer.quantities(), ElementsAre("position_m", "velocity_mps"));
   EXPECT_EQ(scorer.dimension(), 2);
-  RunScore score;
-  scorer.prepare(score, 1);
-  scorer.score_step(Eigen::Vector2d(100.0, 10.0),
-                    record(Eigen::Vector3d(13.0, 999.0, 96.0), Eigen::Vector3d(9.0, 1.0, 4.0)), 0, score);
+  const RunScore score = score_of_step(scorer, Eigen::Vector2d(100.0, 10.0),
+                                       record(Eigen::Vector3d(13.0, 999.0, 96.0), Eigen::Vector3d(9.0, 1.0, 4.0)));
   EXPECT_EQ(score.error[0][0], 4.0);
   EXPECT_EQ(score.error[1][0], 3.0);
   EXPECT_DOUBLE_EQ(score.nees[0], 16.0 / 4.0 + 9.0 / 9.0);
@@ -50,10 +57,8 @@ TEST(Scorer, OfATrackerWithoutVelocityHasPositionsOnly) {
 
 TEST(Scorer, ErrorOfAVectorIsItsNorm) {
   const Scorer scorer(plane_space(), plane_space());
-  RunScore score;
-  scorer.prepare(score, 1);
-  scorer.score_step(Eigen::Vector4d(3.0, 4.0, 0.0, 1.0), record(Eigen::Vector4d::Zero(), Eigen::Vector4d::Ones()), 0,
-                    score);
+  const RunScore score = score_of_step(scorer, Eigen::Vector4d(3.0, 4.0, 0.0, 1.0),
+                                       record(Eigen::Vector4d::Zero(), Eigen::Vector4d::Ones()));
   EXPECT_DOUBLE_EQ(score.error[0][0], 5.0);
   EXPECT_DOUBLE_EQ(score.error[1][0], 1.0);
   EXPECT_DOUBLE_EQ(score.nees[0], 26.0);

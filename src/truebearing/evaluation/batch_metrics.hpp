@@ -10,7 +10,7 @@
 
 namespace truebearing {
 
-struct BatchFigures : RunFigures {
+struct BatchFigures : StepFigures {
   std::vector<std::optional<BatchOutcome>> at_times;  ///< [time] of the rule, of one that solved at its step
 };
 

@@ -11,7 +11,7 @@
 namespace truebearing {
 
 /// Summed over the scored steps of a run.
-struct GospaFigures : RunFigures {
+struct GospaFigures : StepFigures {
   double squared = 0.0;
   double localisation = 0.0;
   double missed = 0.0;

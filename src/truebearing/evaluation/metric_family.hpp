@@ -39,9 +39,14 @@ struct ScoredStep {
 class RunFigures {
  public:
   virtual ~RunFigures() = default;
-  virtual void take(const ScoredStep&) {}
   /// After the last step, with what the tracker reported since the first.
   virtual void end(std::span<const TrackEvent>) {}
+};
+
+/// What is gathered step by step.
+class StepFigures : public RunFigures {
+ public:
+  virtual void take(const ScoredStep&) {}
 };
 
 /// What a family makes of the runs of one tracker: they are added in the order of their numbers, and gone afterwards.

@@ -16,14 +16,20 @@ namespace {
 class RunScorer {
  public:
   RunScorer(const Scorer& scorer, const Recording& recording, const ScoringRule& rule)
-      : scorer_(scorer), recording_(recording), rule_(rule), matched_(recording.truth.size()) {
+      : scorer_(scorer),
+        recording_(recording),
+        rule_(rule),
+        columns_(scorer.dimension()),
+        matched_(recording.truth.size()) {
     const std::size_t steps = recording.measurements.size(), targets = recording.truth.size();
     scorer.prepare(score_, steps, targets);
     take_phases(steps);
     score_.time_steps = steps_at(recording, rule.times_s);
     for (const std::shared_ptr<const MetricFamily>& family : rule.families)
-      if (auto figures = family->begin({rule, scorer, recording, score_.time_steps}))
+      if (auto figures = family->begin({rule, scorer, recording, score_.time_steps})) {
+        if (auto* gathered = dynamic_cast<StepFigures*>(figures.get())) gathered_.push_back(gathered);
         figures_.push_back(std::move(figures));
+      }
     if (rule.assignment) assigned_ = scorer.quantity(rule.assignment->quantity);
   }
 
@@ -32,12 +38,12 @@ class RunScorer {
     for (std::size_t target = 0; target < matched_.size(); ++target)
       if (matched_[target])
         scorer_.score_step(recording_.truth[target].x[step], *matched_[target],
-                           target * recording_.measurements.size() + step, score_);
-    for (const std::unique_ptr<RunFigures>& figures : figures_)
-      figures->take({step, matched_, assigned_ ? &assignment_ : nullptr});
+                           target * recording_.measurements.size() + step, columns_, score_);
+    for (StepFigures* const figures : gathered_) figures->take({step, matched_, assigned_ ? &assignment_ : nullptr});
   }
 
   RunScore finish(std::span<const TrackEvent> events) {
+    scorer_.score_together(columns_, score_);
     for (std::unique_ptr<RunFigures>& figures : figures_) {
       figures->end(events);
       score_.figures.push_back(std::move(figures));
@@ -93,7 +99,9 @@ class RunScorer {
   const Recording& recording_;
   const ScoringRule& rule_;
   RunScore score_;
+  StepColumns columns_;  // of the steps that are not yet scored
   std::vector<std::unique_ptr<RunFigures>> figures_;
+  std::vector<StepFigures*> gathered_;      // those of them that look at every step
   std::vector<const StepRecord*> matched_;  // [target], of this step
   std::optional<std::size_t> assigned_;     // the quantity of rule.assignment
   Gospa assignment_;                        // of this step, where there is one

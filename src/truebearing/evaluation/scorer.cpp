@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <type_traits>
 #include <utility>
 
@@ -13,52 +14,6 @@
 #include "truebearing/evaluation/run_score.hpp"
 
 namespace truebearing {
-namespace {
-
-// The difference in the N components that stand at `places` of both lists: its 2-norm, and d' P^-1 d.
-struct Distance {
-  double norm = 0.0;
-  double squared_by_P = 0.0;
-};
-
-template <int N>
-Distance distance(const BoundedVector& truth, const StepRecord& record, const int* in_truth, const int* in_estimate) {
-  constexpr auto n = static_cast<std::size_t>(N);
-  // Plain arrays, and by elimination as in mahalanobis_squared(): this is done three times for every step of every
-  // tracker.
-  double d[n], P[n][n], squares = 0.0, squared_by_P = 0.0;
-  bool valid = true;
-  for (std::size_t j = 0; j < n; ++j) {
-    d[j] = truth[in_truth[j]] - record.x[in_estimate[j]];
-    squares += d[j] * d[j];
-    for (std::size_t i = j; i < n; ++i) P[i][j] = record.P(in_estimate[i], in_estimate[j]);
-  }
-#pragma GCC unroll 10
-  for (std::size_t k = 0; k < n; ++k) {
-    valid &= P[k][k] > 0.0;
-    const double inverse = 1.0 / P[k][k];
-    squared_by_P += d[k] * d[k] * inverse;
-#pragma GCC unroll 10
-    for (std::size_t i = k + 1; i < n; ++i) {
-      const double factor = P[i][k] * inverse;
-      d[i] -= factor * d[k];
-#pragma GCC unroll 10
-      for (std::size_t j = k + 1; j <= i; ++j) P[i][j] -= factor * P[j][k];
-    }
-  }
-  return {std::sqrt(squares), valid ? squared_by_P : kNaN};
-}
-
-Distance distance(const BoundedVector& truth, const StepRecord& record, const std::vector<int>& in_truth,
-                  const std::vector<int>& in_estimate) {
-  Distance found;
-  with_count(static_cast<int>(in_truth.size()), [&]<int N>(std::integral_constant<int, N>) {
-    if constexpr (N > 0) found = distance<N>(truth, record, in_truth.data(), in_estimate.data());
-  });
-  return found;
-}
-
-}  // namespace
 
 Scorer::Scorer(const StateSpace& truth, const StateSpace& estimate) : truth_(&truth) {
   const auto add = [&](Places& places, int in_truth) {
@@ -66,6 +21,8 @@ Scorer::Scorer(const StateSpace& truth, const StateSpace& estimate) : truth_(&tr
     if (in_estimate < 0) return;
     places.truth.push_back(in_truth);
     places.estimate.push_back(in_estimate);
+    const auto in_all = std::find(all_.truth.begin(), all_.truth.end(), in_truth);
+    places.among_all.push_back(static_cast<int>(in_all - all_.truth.begin()));
   };
   for (int i = 0; i < truth.size(); ++i) add(all_, i);
   for (const Quantity& quantity : truth.quantities) {
@@ -113,19 +70,37 @@ void Scorer::prepare(RunScore& score, std::size_t steps, std::size_t targets) co
   score.quantity_nees.assign(quantities_.size(), std::vector<double>(places, kNaN));
 }
 
-void Scorer::score_step(const BoundedVector& truth, const StepRecord& record, std::size_t place,
+void Scorer::score_step(const BoundedVector& truth, const StepRecord& record, std::size_t place, StepColumns& columns,
                         RunScore& score) const {
-  for (std::size_t q = 0; q < quantities_.size(); ++q) {
-    const Distance off = distance(truth, record, quantities_[q].truth, quantities_[q].estimate);
-    score.error[q][place] = scales_[q] * off.norm;
-    score.quantity_nees[q][place] = off.squared_by_P;
-  }
-  score.nees[place] = distance(truth, record, all_.truth, all_.estimate).squared_by_P;
+  const int lane = columns.steps++;
+  columns.place[static_cast<std::size_t>(lane)] = place;
+  const int *in_truth = all_.truth.data(), *in_estimate = all_.estimate.data();
+  with_count(all_.size(), [&]<int N>(std::integral_constant<int, N>) {
+    for (int j = 0; j < N; ++j) {
+      columns.d(j)[lane] = truth[in_truth[j]] - record.x[in_estimate[j]];
+      for (int i = j; i < N; ++i) columns.P(i, j)[lane] = record.P(in_estimate[i], in_estimate[j]);
+    }
+  });
+  if (columns.steps == StepColumns::kSteps) score_together(columns, score);
   if (record.correction) {
     ++score.corrected;
     score.gate_sum += record.correction->gate;
     score.gate_limited += record.correction->limited ? 1 : 0;
   }
+}
+
+void Scorer::score_together(StepColumns& columns, RunScore& score) const {
+  const std::span places(columns.place.data(), static_cast<std::size_t>(std::exchange(columns.steps, 0)));
+  StepDistances off;
+  for (std::size_t q = 0; q < quantities_.size(); ++q) {
+    kernels::distances(columns, quantities_[q].among_all.data(), quantities_[q].size(), off);
+    for (std::size_t lane = 0; lane < places.size(); ++lane) {
+      score.error[q][places[lane]] = scales_[q] * off.norm[lane];
+      score.quantity_nees[q][places[lane]] = off.squared_by_P[lane];
+    }
+  }
+  kernels::distances(columns, all_.among_all.data(), all_.size(), off);
+  for (std::size_t lane = 0; lane < places.size(); ++lane) score.nees[places[lane]] = off.squared_by_P[lane];
 }
 
 }  // namespace truebearing

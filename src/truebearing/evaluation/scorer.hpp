@@ -9,6 +9,7 @@
 
 #include "truebearing/core/bounded.hpp"
 #include "truebearing/core/state_space.hpp"
+#include "truebearing/evaluation/step_columns.hpp"
 #include "truebearing/tracker/step_record.hpp"
 
 namespace truebearing {
@@ -39,13 +40,19 @@ class Scorer {
   double estimated_value(std::size_t quantity, const BoundedVector& estimate) const;
 
   void prepare(RunScore& score, std::size_t steps, std::size_t targets = 1) const;
-  void score_step(const BoundedVector& truth, const StepRecord& record, std::size_t place, RunScore& score) const;
+  /// Takes the figures of a step that is to be scored, for its place in the score. They stand there once so many steps
+  /// came that they are scored together, or after score_together(). columns: of dimension() components.
+  void score_step(const BoundedVector& truth, const StepRecord& record, std::size_t place, StepColumns& columns,
+                  RunScore& score) const;
+  /// Scores those that wait.
+  void score_together(StepColumns& columns, RunScore& score) const;
 
  private:
-  // Of components that both have: where they stand in the truth and in the estimate.
+  // Of components that both have: where they stand in the truth, in the estimate, and among all that both have.
   struct Places {
     std::vector<int> truth;
     std::vector<int> estimate;
+    std::vector<int> among_all;
     int size() const { return static_cast<int>(truth.size()); }
   };
 

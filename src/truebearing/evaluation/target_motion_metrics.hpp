@@ -10,7 +10,7 @@
 
 namespace truebearing {
 
-struct TargetMotionFigures : RunFigures {
+struct TargetMotionFigures : StepFigures {
   std::vector<TargetMotionError> at_times;  ///< [time] of the rule; NaN where the tracker has no estimate
 };
 

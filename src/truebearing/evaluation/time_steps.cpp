@@ -6,6 +6,7 @@
 namespace truebearing {
 
 std::vector<int> steps_at(const Recording& recording, const std::vector<double>& times_s) {
+  if (times_s.empty()) return {};
   constexpr double kRounding_s = 1e-6;
   const std::vector<Measurement>& measurements = recording.measurements;
   double longest_s = 0.0;

@@ -12,7 +12,7 @@
 
 namespace truebearing {
 
-struct TrackFigures : RunFigures {
+struct TrackFigures : StepFigures {
   TrackOutcome outcome;
   std::vector<std::string> phases;  ///< their names in the run
 };

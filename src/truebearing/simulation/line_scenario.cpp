@@ -58,7 +58,10 @@ Recording LineScenario::simulate(const RunKey& key) const {
   recording.truth_space = &line_space();
   recording.truth.resize(1);
   double time_s = 0.0;
-  for (const Look& look : parameters_.looks.draw(parameters_.period_s, parameters_.steps, key)) {
+  const std::vector<Look> looks = parameters_.looks.draw(parameters_.period_s, parameters_.steps, key);
+  recording.measurements.reserve(looks.size());
+  recording.truth[0].x.reserve(looks.size());
+  for (const Look& look : looks) {
     const double dt_s = look.time_s - time_s;
     time_s = look.time_s;
     const double share = std::abs(dt_s / parameters_.period_s - 1.0) < kRounding ? 1.0 : dt_s / parameters_.period_s;

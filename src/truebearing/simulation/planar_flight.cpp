@@ -109,10 +109,10 @@ FlownTrack PlanarFlight::fly(std::span<const double> times_s, RandomStream& stre
   FlownTrack track{Eigen::Matrix4Xd(4, samples), Eigen::VectorXd(samples)};
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
   Remembered chord(chord_share);
-  Remembered heading(direction);
+  Remembered heading(direction), course(direction);  // of a sub-step, and where a sample is taken
   for (Eigen::Index k = 0; k < samples; ++k) {
     const double begin_s = times_s[static_cast<std::size_t>(k)];
-    track.states.col(k) << position_m, speed * direction(course_rad);
+    track.states.col(k) << position_m, speed * course(course_rad);
     track.since_manoeuvre_s[k] = programme.since_manoeuvre_s(begin_s);
     if (k + 1 == samples) break;
     const double dt_s = times_s[static_cast<std::size_t>(k) + 1] - begin_s;

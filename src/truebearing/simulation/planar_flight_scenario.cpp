@@ -142,7 +142,10 @@ Recording PlanarFlightScenario::simulate(const RunKey& key) const {
   recorded.colwise() -= site_m;
 
   Recording recording = begin_recording();
-  for (std::size_t k = 0; k < static_cast<std::size_t>(flown.cols()); ++k) {
+  const auto steps = static_cast<std::size_t>(flown.cols());
+  recording.measurements.reserve(steps);
+  recording.truth[0].x.reserve(steps);
+  for (std::size_t k = 0; k < steps; ++k) {
     const auto column = static_cast<Eigen::Index>(k);
     Eigen::Vector4d state;
     state << recorded.col(column), flown.col(column).tail<2>();

@@ -20,12 +20,15 @@ struct ConstantVelocity {
   Noise noise;
 
   Matrix F(Scalar dt_s) const {
-    Matrix transition = Matrix::Identity();
+    Matrix transition;
     // Written out: of a loop's result the zeros would not be known where it is multiplied (filter/product.hpp).
+    const auto set = [&](int row, int col) __attribute__((always_inline)) {
+      transition(row, col) = row == col ? Scalar(1) : row + Dim == col ? dt_s : Scalar(0);
+    };
     [&]<int... I>(std::integer_sequence<int, I...>) __attribute__((always_inline)) {
-      ((transition(I, Dim + I) = dt_s), ...);
+      (set(I % kStates, I / kStates), ...);
     }
-    (std::make_integer_sequence<int, Dim>());
+    (std::make_integer_sequence<int, kStates * kStates>());
     return transition;
   }
 

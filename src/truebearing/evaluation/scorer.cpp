@@ -65,9 +65,11 @@ double Scorer::estimated_value(std::size_t quantity, const BoundedVector& estima
 void Scorer::prepare(RunScore& score, std::size_t steps, std::size_t targets) const {
   const std::size_t places = targets * steps;
   score.targets = targets;
-  score.error.assign(quantities_.size(), std::vector<double>(places, kNaN));
   score.nees.assign(places, kNaN);
-  score.quantity_nees.assign(quantities_.size(), std::vector<double>(places, kNaN));
+  for (std::vector<std::vector<double>>* const figures : {&score.error, &score.quantity_nees}) {
+    figures->resize(quantities_.size());
+    for (std::vector<double>& of_quantity : *figures) of_quantity.assign(places, kNaN);
+  }
 }
 
 void Scorer::score_step(const BoundedVector& truth, const StepRecord& record, std::size_t place, StepColumns& columns,

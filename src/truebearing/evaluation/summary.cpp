@@ -67,15 +67,21 @@ SquaredErrors SummaryTally::QuantityTally::add(const RunScore& run, std::size_t 
   phases.resize(std::max(phases.size(), phases_of_run));
   SquaredErrors all;
   std::vector<SquaredErrors> of_phases(phases.size());
-  for (std::size_t first = 0; first < errors.size(); first += run.steps())  // of each target
-    for (std::size_t step = 0; step < run.steps(); ++step) {
-      const double error = errors[first + step];
-      if (std::isnan(error)) continue;
-      all.add(error);
-      steps[step].add(error);
-      if (const int phase = run.phase_at(first + step); phase >= 0)
-        of_phases[static_cast<std::size_t>(phase)].add(error);
+  for (std::size_t place = 0, step = 0; place < errors.size();) {  // stretch by stretch of one phase
+    const int phase = run.phase_at(place);
+    SquaredErrors of_none, &of_phase = phase < 0 ? of_none : of_phases[static_cast<std::size_t>(phase)];
+    SquaredErrors sum = of_phase;
+    for (; place < errors.size() && run.phase_at(place) == phase; ++place) {
+      const double error = errors[place];
+      if (!std::isnan(error)) {
+        all.add(error);
+        sum.add(error);
+        steps[step].add(error);
+      }
+      if (++step == run.steps()) step = 0;  // the next target's
     }
+    of_phase = sum;
+  }
   runs.add(all);
   for (std::size_t phase = 0; phase < phases.size(); ++phase) phases[phase].add(of_phases[phase]);
   const Covered inside(run.quantity_nees[quantity], nees95);
@@ -91,8 +97,10 @@ SummaryTally::SummaryTally(std::string name, const Scorer& scorer, const Scoring
       quantities_(scorer.quantities().size(), QuantityTally(kept_apart)) {}
 
 void SummaryTally::add_consistency(const RunScore& run) {
+  double sum = nees_sum_;  // not in memory, which the values could share for all the compiler knows
   for (const double nees : run.nees)
-    if (!std::isnan(nees)) nees_sum_ += nees;
+    if (!std::isnan(nees)) sum += nees;
+  nees_sum_ = sum;
   const Covered inside(run.nees, scorer_.nees95());
   covered_ += inside.covered;
   count_ += inside.count;

@@ -35,6 +35,9 @@ class Programme {
     return {share * full_.turn_radps, share * full_.acceleration_mps2};
   }
 
+  /// Whether the rates are zero from the time of the last call to that one.
+  bool is_straight_to(double time_s) const { return !manoeuvring_ && time_s < end_s_; }
+
   double since_manoeuvre_s(double time_s) const { return std::max(time_s - manoeuvre_end_s_, 0.0); }
 
  private:
@@ -118,8 +121,14 @@ FlownTrack PlanarFlight::fly(std::span<const double> times_s, RandomStream& stre
     const double dt_s = times_s[static_cast<std::size_t>(k) + 1] - begin_s;
     const int sub_steps = std::max(1, static_cast<int>(std::ceil(dt_s / kMaxSubStep_s - kRounding)));
     const double h = dt_s / sub_steps;
+    const auto middle_s = [&](int i) { return begin_s + (i + 0.5) * h; };
     for (int i = 0; i < sub_steps; ++i) {
-      const Rates rates = programme.rates(begin_s + (i + 0.5) * h);
+      const Rates rates = programme.rates(middle_s(i));
+      if (programme.is_straight_to(middle_s(sub_steps - 1))) {  // the rest of the way
+        const Eigen::Vector2d way_m = speed * h * heading(course_rad);
+        for (; i < sub_steps; ++i) position_m += way_m;
+        break;
+      }
       const double half_turn_rad = 0.5 * h * rates.turn_radps;
       const double next_speed = rates.acceleration_mps2 == 0.0
                                     ? speed

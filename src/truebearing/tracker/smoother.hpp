@@ -21,6 +21,22 @@ struct SmoothingAccount {
   int measured = 0;               ///< its components
 };
 
+/// What the record of a step will be.
+struct SmoothingStep {
+  int track = 0, source = 0;
+  double time_s = 0.0;
+  StepStatus status = StepStatus::ok;
+  BoundedVector x;
+  BoundedMatrix P;
+  ModeVector mu;  // empty of a single filter
+  std::optional<SensorState> sensor;
+  SmoothingAccount account;
+  std::size_t knot = 0;  // the last at or before it
+  bool is_at_knot = false;
+  bool is_as_before = false;  // a measurement that was not looked at: the step before stands
+  bool can_look_back = false;
+};
+
 class Smoother : public Tracker {
  public:
   std::span<const StepRecord> step(const Measurement& measurement) final {
@@ -33,21 +49,7 @@ class Smoother : public Tracker {
   const SmoothingAccount* account() const { return account_; }
 
  protected:
-  // What the record of a step will be.
-  struct Step {
-    int track = 0, source = 0;
-    double time_s = 0.0;
-    StepStatus status = StepStatus::ok;
-    BoundedVector x;
-    BoundedMatrix P;
-    ModeVector mu;  // empty of a single filter
-    std::optional<SensorState> sensor;
-    SmoothingAccount account;
-    std::size_t knot = 0;  // the last at or before it
-    bool is_at_knot = false;
-    bool is_as_before = false;  // a measurement that was not looked at: the step before stands
-    bool can_look_back = false;
-  };
+  using Step = SmoothingStep;
 
   explicit Smoother(const StateSpace& space) { record_.space = &space; }
 

@@ -152,7 +152,7 @@ EIGEN_ALWAYS_INLINE bool is_positive_semidefinite(const Eigen::Matrix<Scalar, N,
 
 /// Lower triangular L with L L' = A, up to some n eps of the variances; NaN where A is not positive semi-definite.
 template <int N, typename Scalar>
-EIGEN_ALWAYS_INLINE Eigen::Matrix<Scalar, N, N> semidefinite_root(const Eigen::Matrix<Scalar, N, N>& A) {
+Eigen::Matrix<Scalar, N, N> semidefinite_root(const Eigen::Matrix<Scalar, N, N>& A) {
   const Eigen::Matrix<Scalar, N, 1> slack = semidefinite_slack<N, Scalar>(A);
   Eigen::Matrix<Scalar, N, N> L;
   for (int j = 0; j < N; ++j)

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <limits>
 
 #include "truebearing/filter/factorization.hpp"
@@ -91,7 +92,7 @@ struct SquareRoot {
     // K = (K S^1/2) S^-1/2 and nis = |S^-1/2 nu|^2 by substitution.
     bool valid = true;
     for (int k = 0; k < M; ++k) {
-      valid &= root(k, k) * root(k, k) > kLeastPivot * kLeastPivot * t(k);
+      valid &= root(k, k) > kLeastPivot * std::sqrt(t(k));
       for (int i = 0; i < k; ++i)
         for (int row = 0; row < N; ++row) update.K(row, k) -= update.K(row, i) * root(i, k);
       for (int row = 0; row < N; ++row) update.K(row, k) /= root(k, k);

@@ -8,6 +8,7 @@
 #include "tests/support/error_message.hpp"
 #include "tests/support/line_trackers.hpp"
 #include "truebearing/core/constants.hpp"
+#include "truebearing/core/covariance.hpp"
 #include "truebearing/evaluation/event_metrics.hpp"
 #include "truebearing/evaluation/gospa_metrics.hpp"
 #include "truebearing/evaluation/track_metrics.hpp"
@@ -94,6 +95,35 @@ TEST(ScoreRecording, StepsWithoutRecordTruthOrBeforeTheFirstAreNotScored) {
     if (!scored[step]) continue;
     EXPECT_DOUBLE_EQ(score.error[0][step], 1.0);
     EXPECT_DOUBLE_EQ(score.nees[step], 0.25);
+  }
+}
+
+// More steps than are scored at once, of which some have no truth, no measurement or are too early.
+TEST(ScoreRecording, EachOfManyStepsHasItsOwnErrors) {
+  Recording recording = testing::radar_family(29).simulate({});
+  recording.measurements[13].z[0] = kNaN;
+  recording.truth[0].x[9].setConstant(kNaN);
+  Ensemble ensemble;
+  ensemble.add("plain", RadarFilter{}.tracker());
+  TrackerSet set(std::move(ensemble));
+  set.show_member("plain");
+  const Scorer scorer(line_space(), line_space());
+  const RunScore score = score_recording(set, {scorer}, recording, {.from_step = 4, .loss_thresholds = {}})[0];
+  const auto alone = RadarFilter{}.tracker();
+  for (std::size_t step = 0; step < 29; ++step) {
+    const StepRecord record = alone->step(recording.measurements[step]).front();
+    const bool is_scored = step >= 3 && step != 9;
+    EXPECT_EQ(!std::isnan(score.nees[step]), is_scored) << step;
+    if (!is_scored) continue;
+    const BoundedVector& truth = recording.truth[0].x[step];
+    for (const std::size_t q : {0u, 1u}) {
+      EXPECT_DOUBLE_EQ(score.error[q][step], scorer.error(q, truth, record.x)) << step;
+      const auto i = static_cast<Eigen::Index>(q);
+      const double d = truth[i] - record.x[i];
+      EXPECT_NEAR(score.quantity_nees[q][step], d * d / record.P(i, i), 1e-12 * d * d / record.P(i, i)) << step;
+    }
+    const double nees = mahalanobis_squared(record.P, truth - record.x);
+    EXPECT_NEAR(score.nees[step], nees, 1e-12 * nees) << step;
   }
 }
 
@@ -195,6 +225,20 @@ TEST(Scorer, ErrorsAreInTheUnitOfTheQuantity) {
   EXPECT_DOUBLE_EQ(scorer.estimated_value(0, estimate), degrees(0.3));
   EXPECT_EQ(scorer.quantity("rate_degps"), 1u);
   EXPECT_FALSE(scorer.quantity("angle"));
+}
+
+TEST(ScoreRecording, TargetsOfManyStepsDoNotMix) {
+  const auto angles = [](double first, double apart, int gap) {
+    std::vector<double> values;
+    for (int step = 0; step < 21; ++step) values.push_back(step == gap ? kNaN : first + apart * step);
+    return values;
+  };
+  const RunScore score = score_of({{1, angles(10.0, 0.5, 9)}, {4, angles(-50.0, 1.25, -1)}},
+                                  testing::angle_recording({{1, angles(10.0, 0.0, -1)}, {4, angles(-50.0, 0.0, 17)}}));
+  std::vector<double> wanted;
+  for (int step = 0; step < 21; ++step) wanted.push_back(step == 9 ? kNaN : 0.5 * step);
+  for (int step = 0; step < 21; ++step) wanted.push_back(step == 17 ? kNaN : 1.25 * step);
+  expect_errors(score, wanted);
 }
 
 TEST(ScoreRecording, TracksAreScoredAgainstTheTargetsOfTheirNumbers) {

@@ -66,8 +66,8 @@ void MedianOf::add(std::span<const double> values) {
     return;
   }
   const std::size_t before = values_.size(), size = before + values.size();
-  // Much at once: what has never been written takes no memory, and a copy of what has been takes time.
-  if (size > values_.capacity()) values_.reserve(std::min(32 * size, kept_apart_));
+  // Much at once: a copy of what there is takes time, and fresh memory that has never been written takes none.
+  if (size > values_.capacity()) values_.reserve(std::min(8 * size, kept_apart_));
   values_.resize(size);
   const auto first = values_.begin() + static_cast<std::ptrdiff_t>(before);
   values_.erase(std::copy_if(values.begin(), values.end(), first, is_number), values_.end());

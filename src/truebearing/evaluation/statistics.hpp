@@ -47,9 +47,10 @@ Estimate share_of(const std::vector<double>& values);
 Estimate share_of(double ones, double count);
 /// Of independent values, the standard deviation, about the mean, over n - 1; its standard error is the jackknife.
 Estimate standard_deviation_of(const std::vector<double>& values);
-/// The middle; of an even number the mean of the two in the middle.
+/// The middle; of an even number the mean of the two in the middle. Of numbers, of which none is NaN.
 double median_of(const std::vector<double>& values);
-/// The same of the places `lower` and `upper` of their ascending order, counted from 0, which are one or neighbours.
+/// The same of the places `lower` and `upper` of their ascending order, counted from 0, which are one or neighbours and
+/// there.
 double middle_of(const std::vector<double>& values, std::size_t lower, std::size_t upper);
 
 }  // namespace truebearing

@@ -7,6 +7,7 @@
 #include <memory>
 #include <utility>
 
+#include "tests/filter/bent_motion.hpp"
 #include "truebearing/core/constants.hpp"
 #include "truebearing/core/random.hpp"
 #include "truebearing/filter/filter_kinds.hpp"
@@ -21,34 +22,13 @@
 namespace truebearing::packed_modes_test {
 namespace {
 
+using truebearing::testing::Bent;
+
 constexpr double kExact = 1e-12;
 
 using Noise = DiscreteWhiteNoise;
 const Eigen::Vector4d kX0(4000.0, -2500.0, 120.0, 60.0);
 const Eigen::Matrix4d kP0 = Eigen::Vector4d(1e4, 1e4, 900.0, 900.0).asDiagonal();
-
-// Of a target that turns as its own position says: F and f are nonlinear.
-struct Bent {
-  using Scalar = double;
-  static constexpr int kStates = 4;
-  using State = Eigen::Vector4d;
-  using Matrix = Eigen::Matrix4d;
-  Eigen::Vector4d f(const State& x, double dt_s) const {
-    State moved = x;
-    moved.head<2>() += dt_s * x.tail<2>();
-    moved[2] += 1e-6 * dt_s * x[0] * x[3];
-    return moved;
-  }
-  Matrix F(const State& x, double dt_s) const {
-    Matrix jacobian = Matrix::Identity();
-    jacobian(0, 2) = jacobian(1, 3) = dt_s;
-    jacobian(2, 0) = 1e-6 * dt_s * x[3];
-    jacobian(2, 3) = 1e-6 * dt_s * x[0];
-    return jacobian;
-  }
-  Matrix Q(double dt_s) const { return dt_s * Matrix::Identity(); }
-};
-static_assert(NonlinearMotionModel<Bent>);
 
 // `count` modes: straight, a few turns, and one that is bent where `bent`.
 ModeBank::Modes modes_of(int count, bool bent) {
@@ -114,7 +94,7 @@ void run_both(int count, bool bent, const MeasurementAt& measurement_at) {
   }
 }
 
-class PackedModesOf : public testing::TestWithParam<int> {};
+class PackedModesOf : public ::testing::TestWithParam<int> {};
 
 TEST_P(PackedModesOf, AreTheSeparateOnesByPositions) {
   RandomStream random({1, Role::evaluation, 0}, StreamId::test);
@@ -135,7 +115,7 @@ TEST_P(PackedModesOf, AreTheSeparateOnesByRangeAndBearing) {
   });
 }
 
-INSTANTIATE_TEST_SUITE_P(Counts, PackedModesOf, testing::Values(2, 4, 6, 9, 10),
+INSTANTIATE_TEST_SUITE_P(Counts, PackedModesOf, ::testing::Values(2, 4, 6, 9, 10),
                          [](const auto& count) { return "Modes" + std::to_string(count.param); });
 
 TEST(PackedModes, AreThoseOfOneKindAndLength) {

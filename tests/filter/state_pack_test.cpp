@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/filter/bent_motion.hpp"
 #include "truebearing/core/constants.hpp"
 #include "truebearing/core/random.hpp"
 #include "truebearing/filter/filter_kinds.hpp"
@@ -23,32 +24,11 @@
 namespace truebearing::state_pack_test {
 namespace {
 
+using truebearing::testing::Bent;
+
 using Noise = DiscreteWhiteNoise;
 using Taken = std::unique_ptr<AnyMeasurement>;
 constexpr LaneMask kAll = 0xff;
-
-// Of a target that turns as its own position says: F and f are nonlinear.
-struct Bent {
-  using Scalar = double;
-  static constexpr int kStates = 4;
-  using State = Eigen::Vector4d;
-  using Matrix = Eigen::Matrix4d;
-  State f(const State& x, double dt_s) const {
-    State moved = x;
-    moved.head<2>() += dt_s * x.tail<2>();
-    moved[2] += 1e-6 * dt_s * x[0] * x[3];
-    return moved;
-  }
-  Matrix F(const State& x, double dt_s) const {
-    Matrix jacobian = Matrix::Identity();
-    jacobian(0, 2) = jacobian(1, 3) = dt_s;
-    jacobian(2, 0) = 1e-6 * dt_s * x[3];
-    jacobian(2, 3) = 1e-6 * dt_s * x[0];
-    return jacobian;
-  }
-  Matrix Q(double dt_s) const { return dt_s * Matrix::Identity(); }
-};
-static_assert(NonlinearMotionModel<Bent>);
 
 std::unique_ptr<TrackedState> multiple_model(int modes, bool bent) {
   InteractingMultipleModel::Modes made;
@@ -186,14 +166,14 @@ TEST(StatePack, LanesAreExtendedKalmanFilters) {
   expect_the_states_own(*state_of<KalmanFilter<4>>(Bent{}), position, false);
 }
 
-class StatePackOf : public testing::TestWithParam<int> {};
+class StatePackOf : public ::testing::TestWithParam<int> {};
 
 TEST_P(StatePackOf, LanesAreMultipleModels) {
   expect_the_states_own(*multiple_model(GetParam(), false), position, false);
   if (GetParam() > 2) expect_the_states_own(*multiple_model(GetParam(), true), range_and_bearing, true);
 }
 
-INSTANTIATE_TEST_SUITE_P(Modes, StatePackOf, testing::Values(2, 3, 4, 5, 6, 8, 9, 10),
+INSTANTIATE_TEST_SUITE_P(Modes, StatePackOf, ::testing::Values(2, 3, 4, 5, 6, 8, 9, 10),
                          [](const auto& count) { return std::to_string(count.param); });
 
 // On the line and in space, by positions.

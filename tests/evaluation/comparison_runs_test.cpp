@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "tests/support/correction_models.hpp"
+#include "tests/evaluation/corrected_set.hpp"
 #include "tests/support/error_message.hpp"
 #include "tests/support/line_trackers.hpp"
 #include "truebearing/evaluation/report.hpp"
@@ -77,20 +77,7 @@ TEST(ComparisonRuns, BlocksFromTwoProcessesGiveTheFiguresOfOneByteForByte) {
 
 // A corrected tracker and its details, whose runs of a block are stepped together.
 TEST(ComparisonRuns, BlocksAreThoseOfRunsStepByStepAlone) {
-  Ensemble ensemble;
-  RadarFilter radar;
-  ensemble.add("plain", radar.tracker());
-  radar.variance = {1e6, 5e4};
-  ensemble.add("wide", radar.tracker());
-  radar.sigma_m = 4000.0;
-  ensemble.add("tuned", radar.tracker());
-  TrackerSet set(std::move(ensemble));
-  for (const char* name : {"plain", "tuned"}) set.show_member(name);
-  RandomStream random({}, StreamId::test);
-  CorrectionModel model = testing::line_model(testing::radar_features(), testing::random_parameters(random, 4, 6, 2),
-                                              "plain", "tuned", "wide");
-  model.gate = testing::box(4, -2.0, 2.0, 3.0);
-  set.show_correction("nfnn", testing::shared(model), {.kappa = 0.5});
+  const TrackerSet set = testing::corrected_set({"plain", "tuned"});
   const LineScenario scenario = testing::radar_family(20);
   const std::vector<NamedScenario> scenarios{{"family", &scenario}};
   const ComparisonOptions asked = options(3000);

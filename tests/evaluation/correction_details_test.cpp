@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "tests/support/correction_models.hpp"
+#include "tests/evaluation/corrected_set.hpp"
 #include "tests/support/line_trackers.hpp"
 #include "truebearing/evaluation/comparison.hpp"
 #include "truebearing/evaluation/report.hpp"
@@ -15,27 +15,8 @@ namespace truebearing::correction_details_test {
 namespace {
 
 using nlohmann::json;
-using testing::RadarFilter;
 
 constexpr int kSteps = 30, kRuns = 6;
-
-TrackerSet corrected_set() {
-  Ensemble ensemble;
-  RadarFilter radar;
-  ensemble.add("plain", radar.tracker());
-  radar.variance = {1e6, 5e4};
-  ensemble.add("wide", radar.tracker());
-  radar.sigma_m = 4000.0;
-  ensemble.add("tuned", radar.tracker());
-  TrackerSet set(std::move(ensemble));
-  set.show_member("tuned");
-  RandomStream random({}, StreamId::test);
-  CorrectionModel model = testing::line_model(testing::radar_features(), testing::random_parameters(random, 4, 6, 2),
-                                              "plain", "tuned", "wide");
-  model.gate = testing::box(4, -2.0, 2.0, 3.0);  // ln step leaves it at the eighth
-  set.show_correction("nfnn", testing::shared(model), {.kappa = 0.5});
-  return set;
-}
 
 Comparison compared(int threads, bool details, bool two_sets = false) {
   const LineScenario scenario = testing::radar_family(kSteps), longer = testing::radar_family(kSteps + 10);
@@ -46,7 +27,7 @@ Comparison compared(int threads, bool details, bool two_sets = false) {
   options.threads = threads;
   options.scoring.from_step = 3;
   options.details = details;
-  return compare(corrected_set(), scenarios, options);
+  return compare(testing::corrected_set({"tuned"}), scenarios, options);
 }
 
 double sum_of(const std::vector<double>& values) {

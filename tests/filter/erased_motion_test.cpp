@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <stdexcept>
+
 #include "truebearing/filter/kalman.hpp"
+#include "truebearing/motion/constant_velocity.hpp"
 #include "truebearing/motion/coordinated_turn.hpp"
 #include "truebearing/motion/turning_target.hpp"
 
@@ -11,6 +14,7 @@ namespace truebearing::erased_motion_test {
 namespace {
 
 using Turn = CoordinatedTurn<DiscreteWhiteNoise>;
+using Straight = ConstantVelocity<1, DiscreteWhiteNoise>;
 using Turning = TurningTarget<DiscreteWhiteNoise>;
 
 template <int N>
@@ -69,6 +73,34 @@ TEST(ErasedMotion, OfNoCovarianceFailsAndLeavesTheEstimate) {
     EXPECT_EQ(filter.x(), x);
   }
   EXPECT_EQ(filter.predict(*motion, 1.0, made), StepStatus::ok);
+}
+
+// A model that knows nothing of more than a second, of which F can be had and Q cannot.
+struct ShortMotion : Straight {
+  Matrix Q(double dt_s) const {
+    if (dt_s > 1.0) throw std::domain_error("too long");
+    return Straight::Q(dt_s);
+  }
+};
+
+TEST(ErasedMotion, BelievesNothingThatWasNotMade) {
+  const ShortMotion model{{{2.0}}};
+  const std::shared_ptr<const SizedMotion<2>> motion = erased(model);
+  const Eigen::Vector2d x(1.0, 2.0);
+  const Eigen::Matrix2d P = some_covariance<2>();
+  KalmanFilter<2> expected(x, P), filter(x, P);
+  ASSERT_EQ(expected.predict(model, 0.5), StepStatus::ok);
+  Transition<2> made;
+  for (int twice = 0; twice < 2; ++twice) {
+    KalmanFilter<2> carried = filter;
+    ASSERT_EQ(carried.predict(*motion, 0.5, made), StepStatus::ok);
+    EXPECT_EQ(carried.x(), expected.x());
+    EXPECT_EQ(carried.P(), expected.P());
+    EXPECT_THROW(filter.predict(*motion, 2.0, made), std::domain_error);
+    EXPECT_THROW(filter.predict(*motion, 2.0, made), std::domain_error);
+    EXPECT_EQ(filter.x(), x);
+    EXPECT_EQ(filter.P(), P);
+  }
 }
 
 }  // namespace

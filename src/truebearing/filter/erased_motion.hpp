@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "truebearing/core/constants.hpp"
 #include "truebearing/filter/covariance_form.hpp"
 #include "truebearing/filter/product.hpp"
 #include "truebearing/motion/any_motion.hpp"
@@ -55,10 +56,12 @@ class ErasedMotion final : public SizedMotion<Model::kStates> {
   }
 
  private:
+  // Of no dt until it has both: a model that throws leaves nothing that would be taken for made.
   [[gnu::noinline]] void make(double dt_s, Transition<N>& made) const {
-    made.dt_s = dt_s;
+    made.dt_s = kNaN;
     if constexpr (LinearMotionModel<Model>) made.F = model_.F(dt_s);
     made.Q = model_.Q(dt_s);
+    made.dt_s = dt_s;
   }
 
   EIGEN_ALWAYS_INLINE Matrix jacobian(const State& x, double dt_s) const {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "tests/app/program.hpp"
+#include "tests/app/program_tests.hpp"
 #include "tests/support/array_recording.hpp"
 #include "tests/support/flight_study.hpp"
 #include "truebearing/io/json_file.hpp"
@@ -14,20 +13,11 @@
 #include "truebearing/recording/snapshot_log.hpp"
 #include "truebearing/tracker/step_log.hpp"
 
-namespace truebearing::command_line_test {
+namespace truebearing::app_test::command_line_test {
 namespace {
 
 using nlohmann::json;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using testing::is_one_line;
 using testing::kFlightStudy;
-using testing::kStudy;
-using testing::Outcome;
-using testing::replaced;
-using testing::run;
-using testing::TemporaryFolder;
-using testing::write_study;
 
 TEST(Program, WrongUsageIsStatus2) {
   const TemporaryFolder folder;
@@ -415,4 +405,4 @@ innovation = false
 }
 
 }  // namespace
-}  // namespace truebearing::command_line_test
+}  // namespace truebearing::app_test::command_line_test

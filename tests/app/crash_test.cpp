@@ -1,27 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // What becomes of files when the program is killed, the disk is full or two of it write at once: the old file or the new one.
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "tests/app/program.hpp"
+#include "tests/app/program_tests.hpp"
 #include "truebearing/correction/model_file.hpp"
 
-namespace truebearing::crash_test {
+namespace truebearing::app_test::crash_test {
 namespace {
-
-using ::testing::HasSubstr;
-using testing::kStudy;
-using testing::Outcome;
-using testing::replaced;
-using testing::run;
-using testing::start;
-using testing::TemporaryFolder;
-using testing::wait_for;
-using testing::write_study;
 
 TEST(ProgramCrash, KilledWhileTrainingLeavesTheOldModel) {
   const TemporaryFolder folder, outputs;
@@ -71,7 +60,7 @@ TEST(ProgramCrash, FullDiskLeavesTheOldFile) {
   const Outcome trained = run(folder, "train small.toml --quiet", "trap '' XFSZ; ulimit -f 1;");
   EXPECT_EQ(trained.status, 1);
   EXPECT_THAT(trained.err, HasSubstr("small.nfnn.json"));
-  EXPECT_TRUE(testing::is_one_line(trained.err)) << trained.err;
+  EXPECT_TRUE(is_one_line(trained.err)) << trained.err;
   EXPECT_EQ(folder.read("small.nfnn.json"), "the old model");
   EXPECT_EQ(folder.files(), files) << "no half-written file is left";
 }
@@ -94,4 +83,4 @@ TEST(ProgramCrash, OfTwoWritersOneWinsWhole) {
 }
 
 }  // namespace
-}  // namespace truebearing::crash_test
+}  // namespace truebearing::app_test::crash_test

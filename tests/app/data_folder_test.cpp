@@ -1,22 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
 
-#include "tests/app/program.hpp"
+#include "tests/app/program_tests.hpp"
 
-namespace truebearing::data_folder_test {
+namespace truebearing::app_test::data_folder_test {
 namespace {
-
-using ::testing::HasSubstr;
-using testing::kStudy;
-using testing::Outcome;
-using testing::run;
-using testing::TemporaryFolder;
-using testing::write_study;
 
 const std::filesystem::path kSource = TRUEBEARING_SOURCE_DIR;
 
@@ -96,4 +88,4 @@ TEST(Completion, OffersCommandsStudiesAndOptions) {
 }
 
 }  // namespace
-}  // namespace truebearing::data_folder_test
+}  // namespace truebearing::app_test::data_folder_test

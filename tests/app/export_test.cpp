@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <string>
 
-#include "tests/app/program.hpp"
+#include "tests/app/program_tests.hpp"
 
-namespace truebearing::export_test {
+namespace truebearing::app_test::export_test {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using testing::Outcome;
-using testing::run;
-using testing::TemporaryFolder;
 
 const std::string kModels = TRUEBEARING_SOURCE_DIR "/models/";
 
@@ -48,10 +41,10 @@ TEST(Export, RefusesRulesAndOtherFormats) {
     const Outcome outcome = run(folder, "export " + arguments);
     EXPECT_EQ(outcome.status, 1) << arguments;
     EXPECT_THAT(outcome.err, HasSubstr(says)) << arguments;
-    EXPECT_TRUE(testing::is_one_line(outcome.err)) << outcome.err;
+    EXPECT_TRUE(is_one_line(outcome.err)) << outcome.err;
   }
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "x"));
 }
 
 }  // namespace
-}  // namespace truebearing::export_test
+}  // namespace truebearing::app_test::export_test

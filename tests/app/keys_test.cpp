@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // `truebearing keys`: docs/keys.md is what it writes; every key that is read has a meaning, and every meaning a key.
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -8,17 +7,10 @@
 #include <sstream>
 #include <string>
 
-#include "tests/app/program.hpp"
+#include "tests/app/program_tests.hpp"
 
-namespace truebearing::keys_test {
+namespace truebearing::app_test::keys_test {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
-using testing::Outcome;
-using testing::run;
-using testing::TemporaryFolder;
 
 std::string document() {
   std::ostringstream text;
@@ -63,8 +55,8 @@ TEST(Keys, MistypedTableIsGivenTheNearest) {
   const Outcome refused = run(folder, "keys motoin");
   EXPECT_EQ(refused.status, 1);
   EXPECT_THAT(refused.err, AllOf(HasSubstr("motoin"), HasSubstr("did you mean \"motion\"?")));
-  EXPECT_TRUE(testing::is_one_line(refused.err)) << refused.err;
+  EXPECT_TRUE(is_one_line(refused.err)) << refused.err;
 }
 
 }  // namespace
-}  // namespace truebearing::keys_test
+}  // namespace truebearing::app_test::keys_test

@@ -12,18 +12,12 @@
 #include <set>
 #include <thread>
 
-#include "tests/app/program.hpp"
+#include "tests/app/program_tests.hpp"
 #include "tests/support/environment.hpp"
 #include "truebearing/core/random.hpp"
 
-namespace truebearing::kill_test {
+namespace truebearing::app_test::kill_test {
 namespace {
-
-using testing::run;
-using testing::start;
-using testing::TemporaryFolder;
-using testing::wait_for;
-using testing::write_study;
 
 int kills() {
   return testing::number_from_environment("TRUEBEARING_KILLS", 3);
@@ -127,4 +121,4 @@ INSTANTIATE_TEST_SUITE_P(Commands, ProgramKilled, ::testing::ValuesIn(kCommands)
                          [](const auto& command) { return command.param.name; });
 
 }  // namespace
-}  // namespace truebearing::kill_test
+}  // namespace truebearing::app_test::kill_test

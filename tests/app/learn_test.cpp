@@ -1,21 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <string>
 
-#include "tests/app/program.hpp"
+#include "tests/app/program_tests.hpp"
 
-namespace truebearing::learn_test {
+namespace truebearing::app_test::learn_test {
 namespace {
-
-using ::testing::HasSubstr;
-using testing::kStudy;
-using testing::Outcome;
-using testing::run;
-using testing::TemporaryFolder;
-using testing::write_study;
 
 void write_unlearned(const TemporaryFolder& folder) {
   write_study(folder);
@@ -62,10 +54,10 @@ TEST(Learn, RefusesWhatHasNothingToLearnAndStreams) {
     const Outcome outcome = run(folder, arguments);
     EXPECT_EQ(outcome.status, 1) << arguments;
     EXPECT_THAT(outcome.err, HasSubstr(says)) << arguments;
-    EXPECT_TRUE(testing::is_one_line(outcome.err)) << outcome.err;
+    EXPECT_TRUE(is_one_line(outcome.err)) << outcome.err;
   }
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "small.parameters.toml"));
 }
 
 }  // namespace
-}  // namespace truebearing::learn_test
+}  // namespace truebearing::app_test::learn_test

@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "tests/app/program.hpp"
+#include "tests/app/program_tests.hpp"
 
-namespace truebearing::new_study_test {
+namespace truebearing::app_test::new_study_test {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::Not;
-using testing::Outcome;
-using testing::run;
-using testing::TemporaryFolder;
 
 class NewStudyOfKind : public ::testing::TestWithParam<const char*> {};
 
@@ -72,11 +65,11 @@ TEST(NewStudy, WhatMakesNoSenseIsRefusedAndNothingIsReplaced) {
         "new array -o a.toml --sigma 1", "new radar -o a.toml --speeds 60 20", "new flight -o a.toml --period nan"}) {
     const Outcome outcome = run(folder, arguments);
     EXPECT_EQ(outcome.status, 1) << arguments;
-    EXPECT_TRUE(testing::is_one_line(outcome.err)) << outcome.err;
+    EXPECT_TRUE(is_one_line(outcome.err)) << outcome.err;
   }
   EXPECT_EQ(run(folder, "new submarine").status, 2);
   EXPECT_EQ(folder.files(), 1);
 }
 
 }  // namespace
-}  // namespace truebearing::new_study_test
+}  // namespace truebearing::app_test::new_study_test

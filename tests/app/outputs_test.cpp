@@ -1,24 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the program does with its outputs: nothing of the user's is destroyed, and nothing fails in silence.
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "tests/app/program.hpp"
+#include "tests/app/program_tests.hpp"
 
-namespace truebearing::outputs_test {
+namespace truebearing::app_test::outputs_test {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using testing::is_one_line;
-using testing::kStudy;
-using testing::Outcome;
-using testing::replaced;
-using testing::run;
-using testing::TemporaryFolder;
-using testing::write_study;
 
 std::string plain_study() {
   return replaced(kStudy.substr(0, kStudy.find("[trackers.tuned]")), "pairs = [\"nfnn - tuned\"]\n", "");
@@ -134,4 +123,4 @@ TEST(Outputs, ForgottenAndImpossibleValuesAreWrongUsage) {
 }
 
 }  // namespace
-}  // namespace truebearing::outputs_test
+}  // namespace truebearing::app_test::outputs_test

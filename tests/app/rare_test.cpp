@@ -1,33 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // truebearing rare, as a user calls it.
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "tests/app/program.hpp"
+#include "tests/app/program_tests.hpp"
 
-namespace truebearing::rare_test {
+namespace truebearing::app_test::rare_test {
 namespace {
-
-using ::testing::HasSubstr;
-using testing::is_one_line;
-using testing::kStudy;
-using testing::Outcome;
-using testing::replaced;
-using testing::run;
-using testing::TemporaryFolder;
-using testing::write_study;
-
-// A study whose plain filter needs neither tuning nor training.
-std::string study() {
-  return replaced(kStudy.substr(0, kStudy.find("[trackers.wide]")), "\"nfnn - tuned\"", "\"tuned - plain\"");
-}
 
 TEST(Rare, TellsTheLossRateWithItsErrorAndCountsPlainRunsBesideIt) {
   const TemporaryFolder folder;
-  write_study(folder, study());
+  write_study(folder, tuned_study());
   const Outcome outcome = run(
       folder,
       "rare small.toml plain --loss position_m=4000 --draws 100 --repetitions 12 --plain 4000 --json rare.json --quiet");
@@ -52,7 +37,7 @@ TEST(Rare, TellsTheLossRateWithItsErrorAndCountsPlainRunsBesideIt) {
 
 TEST(Rare, WhatCannotBeToldIsRefused) {
   const TemporaryFolder folder;
-  write_study(folder, study());
+  write_study(folder, tuned_study());
   const auto refused = [&](const std::string& arguments, const std::string& message) {
     const Outcome outcome = run(folder, "rare " + arguments);
     EXPECT_EQ(outcome.status, 1);
@@ -65,9 +50,9 @@ TEST(Rare, WhatCannotBeToldIsRefused) {
   refused("small.toml plain --loss position_m=-1", "--loss: is \"position_m=-1\"");
   refused("small.toml plain --set other", "--set: \"other\" is no set of the study");
   refused("small.toml plain --json small.toml", "small.toml");
-  folder.write("none.toml", replaced(study(), "loss_thresholds = { position_m = 20000.0 }", ""));
+  folder.write("none.toml", replaced(tuned_study(), "loss_thresholds = { position_m = 20000.0 }", ""));
   refused("none.toml plain", "scoring.loss_thresholds: say of no quantity of plain when it is lost");
 }
 
 }  // namespace
-}  // namespace truebearing::rare_test
+}  // namespace truebearing::app_test::rare_test

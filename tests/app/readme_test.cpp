@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every command that the README and docs/ print runs, with few runs; so do their studies; and every link leads somewhere.
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,15 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "tests/app/program.hpp"
+#include "tests/app/program_tests.hpp"
 
-namespace truebearing::readme_test {
+namespace truebearing::app_test::readme_test {
 namespace {
-
-using ::testing::HasSubstr;
-using testing::Outcome;
-using testing::run;
-using testing::TemporaryFolder;
 
 namespace fs = std::filesystem;
 
@@ -124,4 +118,4 @@ TEST(Readme, EveryLinkLeadsSomewhere) {
 }
 
 }  // namespace
-}  // namespace truebearing::readme_test
+}  // namespace truebearing::app_test::readme_test

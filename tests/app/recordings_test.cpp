@@ -1,23 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Recordings as they come, given to the program.
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "tests/app/program.hpp"
+#include "tests/app/program_tests.hpp"
 
-namespace truebearing::recordings_test {
+namespace truebearing::app_test::recordings_test {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using testing::is_one_line;
-using ::testing::Not;
-using testing::Outcome;
-using testing::run;
-using testing::TemporaryFolder;
 
 TEST(ProgramRecordings, CheckSaysWhatALogHolds) {
   const TemporaryFolder folder;
@@ -35,7 +26,7 @@ TEST(ProgramRecordings, CheckSaysWhatALogHolds) {
 
 TEST(ProgramRecordings, CheckSaysWhatAStepLogHolds) {
   const TemporaryFolder folder;
-  testing::write_study(folder, testing::replaced(testing::kStudy, "[trackers.nfnn]", "[trackers.nfnn]\nshow = false"));
+  write_study(folder, replaced(kStudy, "[trackers.nfnn]", "[trackers.nfnn]\nshow = false"));
   folder.write("log.csv", "time_s,position_m\n1,100\n2,110\n3,\n4,130\n");
   ASSERT_EQ(run(folder, "track small.toml log.csv -o steps.csv").status, 0);
   const Outcome whole = run(folder, "check steps.csv");
@@ -103,4 +94,4 @@ TEST(ProgramRecordings, TmaTakesOtherNamesAndUnits) {
 }
 
 }  // namespace
-}  // namespace truebearing::recordings_test
+}  // namespace truebearing::app_test::recordings_test

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // --report and `truebearing report`, as a user calls them.
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,28 +7,14 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "tests/app/program.hpp"
+#include "tests/app/program_tests.hpp"
 #include "tests/support/markup.hpp"
 
-namespace truebearing::report_test {
+namespace truebearing::app_test::report_test {
 namespace {
 
-using ::testing::AllOf;
 using testing::count_of;
-using ::testing::HasSubstr;
-using testing::is_one_line;
-using testing::kStudy;
-using testing::Outcome;
 using testing::read_markup;
-using testing::replaced;
-using testing::run;
-using testing::TemporaryFolder;
-using testing::write_study;
-
-// Plain and tuned alone, which need no training.
-std::string tuned_study() {
-  return replaced(kStudy.substr(0, kStudy.find("[trackers.wide]")), "\"nfnn - tuned\"", "\"tuned - plain\"");
-}
 
 // Without what varies.
 nlohmann::json results_of(const TemporaryFolder& folder, const std::string& file) {
@@ -151,4 +136,4 @@ TEST(Report, InputAtFaultIsOneLineThatNamesTheFile) {
 }
 
 }  // namespace
-}  // namespace truebearing::report_test
+}  // namespace truebearing::app_test::report_test

@@ -1,35 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // compare --shard and merge, as the jobs of a batch system call them.
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
 #include <fstream>
 
-#include "tests/app/program.hpp"
+#include "tests/app/program_tests.hpp"
 #include "tests/app/without_timings.hpp"
 
-namespace truebearing::shard_test {
+namespace truebearing::app_test::shard_test {
 namespace {
 
-using ::testing::HasSubstr;
-using testing::is_one_line;
-using testing::kStudy;
-using testing::Outcome;
-using testing::replaced;
-using testing::run;
-using testing::TemporaryFolder;
 using testing::without_timings;
-using testing::write_study;
-
-// Plain and tuned alone, which need no training.
-std::string tuned_study() {
-  return replaced(kStudy.substr(0, kStudy.find("[trackers.wide]")), "\"nfnn - tuned\"", "\"tuned - plain\"");
-}
-
-std::string last_line(const std::string& text) {
-  return text.substr(text.rfind('\n', text.size() - 2) + 1);
-}
 
 void write_shards(const TemporaryFolder& folder, int count, const std::string& options) {
   for (int i = 1; i <= count; ++i) {
@@ -155,4 +137,4 @@ TEST(Shards, OptionsThatMakeNoShardAreRefused) {
 }
 
 }  // namespace
-}  // namespace truebearing::shard_test
+}  // namespace truebearing::app_test::shard_test

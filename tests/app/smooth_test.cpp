@@ -1,22 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/app/program.hpp"
+#include "tests/app/program_tests.hpp"
 #include "tests/support/radar_study.hpp"
 #include "truebearing/tracker/step_log.hpp"
 
-namespace truebearing::smooth_test {
+namespace truebearing::app_test::smooth_test {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using testing::kStudy;
-using ::testing::Not;
-using testing::Outcome;
-using testing::run;
-using testing::TemporaryFolder;
-using testing::write_study;
 
 // The small study without what is yet to be trained, and a log of it.
 void write_log(const TemporaryFolder& folder) {
@@ -81,4 +71,4 @@ TEST(Smooth, SaysWhatThereIsNoSmootherOf) {
 }
 
 }  // namespace
-}  // namespace truebearing::smooth_test
+}  // namespace truebearing::app_test::smooth_test

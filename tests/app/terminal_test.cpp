@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is printed for people: its width, its marks, its sentences. On a terminal: script(1) makes one.
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,27 +7,18 @@
 #include <sstream>
 #include <string>
 
-#include "tests/app/program.hpp"
+#include "tests/app/program_tests.hpp"
 
-namespace truebearing::terminal_test {
+namespace truebearing::app_test::terminal_test {
 namespace {
 
 using ::testing::ContainsRegex;
-using ::testing::HasSubstr;
-using ::testing::Not;
-using testing::Outcome;
-using testing::run;
-using testing::TemporaryFolder;
 
 std::size_t widest_line(const std::string& text) {
   std::size_t widest = 0;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) widest = std::max(widest, line.size());
   return widest;
-}
-
-std::string last_line(const std::string& text) {
-  return text.substr(text.rfind('\n', text.size() - 2) + 1);
 }
 
 TEST(Terminal, CompareHas100ColumnsUnlessItMayBeWide) {
@@ -86,13 +76,13 @@ TEST(Terminal, AMistypedSubcommandGetsTheNearestName) {
   const Outcome outcome = run(folder, "comprae small.toml");
   EXPECT_EQ(outcome.status, 2);
   EXPECT_THAT(outcome.err, HasSubstr("\"comprae\" is no subcommand; valid: did you mean \"compare\""));
-  EXPECT_TRUE(testing::is_one_line(outcome.err)) << outcome.err;
+  EXPECT_TRUE(is_one_line(outcome.err)) << outcome.err;
   EXPECT_EQ(outcome.out, "");
 }
 
 TEST(Terminal, RulesAreATableWithALegend) {
   const TemporaryFolder folder;
-  testing::write_study(folder);
+  write_study(folder);
   EXPECT_EQ(run(folder, "tune small.toml --quiet").status, 0);
   EXPECT_EQ(run(folder, "train small.toml --quiet").status, 0);
   const Outcome outcome = run(folder, "rules small.nfnn.json");
@@ -117,4 +107,4 @@ TEST(Terminal, OfARecurrentNetworkItsFactsAreTold) {
 }
 
 }  // namespace
-}  // namespace truebearing::terminal_test
+}  // namespace truebearing::app_test::terminal_test

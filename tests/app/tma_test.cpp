@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,22 +6,15 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "tests/app/program.hpp"
+#include "tests/app/program_tests.hpp"
 #include "tests/support/bearing_frequency_runs.hpp"
 #include "tests/support/bearing_runs.hpp"
 #include "truebearing/recording/recording_csv.hpp"
 
-namespace truebearing::tma_test {
+namespace truebearing::app_test::tma_test {
 namespace {
 
 using nlohmann::json;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using testing::is_one_line;
-using ::testing::Not;
-using testing::Outcome;
-using testing::run;
-using testing::TemporaryFolder;
 
 // The first bearings of one of Cho's runs, as a log with truth.
 std::string log_until(double end_s) {
@@ -364,4 +356,4 @@ TEST(TmaCommand, BadLogsAreOneLineErrors) {
 }
 
 }  // namespace
-}  // namespace truebearing::tma_test
+}  // namespace truebearing::app_test::tma_test

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // `truebearing track` on logs of any length, on streams, and what it says to people.
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -13,21 +12,13 @@
 #include <sstream>
 #include <sys/resource.h>
 
-#include "tests/app/program.hpp"
+#include "tests/app/program_tests.hpp"
 #include "tests/support/array_recording.hpp"
 #include "truebearing/recording/snapshot_log.hpp"
 #include "truebearing/tracker/step_log.hpp"
 
-namespace truebearing::track_test {
+namespace truebearing::app_test::track_test {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
-using testing::Outcome;
-using testing::replaced;
-using testing::run;
-using testing::TemporaryFolder;
 
 const std::string kLineStudy = R"(name = "line"
 [scenario]
@@ -74,7 +65,7 @@ std::string log_of(int rows, double from_s = 0.0) {
 // The most memory that it had, in kB.
 long peak_kB(const TemporaryFolder& folder, const std::string& arguments) {
   const TemporaryFolder outputs;
-  const pid_t child = testing::start(folder, arguments, outputs.path());
+  const pid_t child = start(folder, arguments, outputs.path());
   int status = 0;
   struct rusage used;
   ::wait4(child, &status, 0, &used);
@@ -106,7 +97,7 @@ TEST(Track, AnswersARowOfAStreamAsItComes) {
   ASSERT_EQ(::mkfifo(steps.c_str(), 0600), 0);
   for (const char* arguments : {"track line.toml - -o - < log > steps", "track line.toml log -o steps"}) {
     const TemporaryFolder outputs;
-    const pid_t child = testing::start(folder, arguments, outputs.path());
+    const pid_t child = start(folder, arguments, outputs.path());
     // Neither waits for the other end, which the program opens when it likes, or never where it gives up.
     std::FILE* to = std::fopen(log.c_str(), "r+");
     const int from = ::open(steps.c_str(), O_RDONLY | O_NONBLOCK);
@@ -125,7 +116,7 @@ TEST(Track, AnswersARowOfAStreamAsItComes) {
     std::fflush(to);
     EXPECT_THAT(answer(), HasSubstr("3,plain,0,ok,300,")) << arguments;
     std::fclose(to);
-    EXPECT_EQ(testing::wait_for(child), 0) << outputs.read("err.txt");
+    EXPECT_EQ(wait_for(child), 0) << outputs.read("err.txt");
     ::close(from);
   }
 }
@@ -251,7 +242,7 @@ TEST(Track, SaysWhatAnArrayCannotTell) {
   for (const char* command : {"track ", "compare --quiet --runs 1 --truth three.h5 "}) {
     const Outcome few = run(folder, command + data + "array_a_10db.toml" + (command[0] == 't' ? " three.h5" : ""));
     EXPECT_EQ(few.status, 1);
-    EXPECT_TRUE(testing::is_one_line(few.err)) << few.err;
+    EXPECT_TRUE(is_one_line(few.err)) << few.err;
     EXPECT_THAT(few.err, AllOf(HasSubstr("trackers."), HasSubstr("takes an array of"), HasSubstr("three.h5 has 3")));
   }
   Recording wide = testing::array_recording();
@@ -382,4 +373,4 @@ TEST(Track, LateRowsAreTakenWhereTheyBelong) {
 }
 
 }  // namespace
-}  // namespace truebearing::track_test
+}  // namespace truebearing::app_test::track_test

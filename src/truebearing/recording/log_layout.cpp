@@ -7,55 +7,15 @@
 #include "truebearing/core/bounded.hpp"
 #include "truebearing/core/printable.hpp"
 #include "truebearing/core/suggestion.hpp"
+#include "truebearing/recording/known_columns.hpp"
 #include "truebearing/recording/log_columns.hpp"
 #include "truebearing/recording/log_units.hpp"
 
 namespace truebearing {
 namespace {
 
-/// What a log may hold of this name in a unit of this dimension, and what it is called here.
-struct KnownColumn {
-  std::string_view stem;
-  Dimension dimension;
-  ColumnRole role;
-  const char* name;
-};
-constexpr std::array kKnown{
-    KnownColumn{"position", Dimension::length, ColumnRole::measured, "position_m"},
-    KnownColumn{"east", Dimension::length, ColumnRole::measured, "east_m"},
-    KnownColumn{"north", Dimension::length, ColumnRole::measured, "north_m"},
-    KnownColumn{"up", Dimension::length, ColumnRole::measured, "up_m"},
-    KnownColumn{"range", Dimension::length, ColumnRole::measured, "range_m"},
-    KnownColumn{"range_rate", Dimension::speed, ColumnRole::measured, "range_rate_mps"},
-    KnownColumn{"bearing", Dimension::angle, ColumnRole::measured, "bearing_deg"},
-    KnownColumn{"elevation", Dimension::angle, ColumnRole::measured, "elevation_deg"},
-    KnownColumn{"frequency", Dimension::frequency, ColumnRole::measured, "frequency_hz"},
-    KnownColumn{"sensor_east", Dimension::length, ColumnRole::sensor, "sensor_east_m"},
-    KnownColumn{"sensor_north", Dimension::length, ColumnRole::sensor, "sensor_north_m"},
-    KnownColumn{"sensor_up", Dimension::length, ColumnRole::sensor, "sensor_up_m"},
-    KnownColumn{"sensor_east", Dimension::speed, ColumnRole::sensor, "sensor_east_mps"},
-    KnownColumn{"sensor_north", Dimension::speed, ColumnRole::sensor, "sensor_north_mps"},
-    KnownColumn{"sensor_up", Dimension::speed, ColumnRole::sensor, "sensor_up_mps"},
-    KnownColumn{"guess_range", Dimension::length, ColumnRole::guess, "guess_range_m"},
-    KnownColumn{"guess_range_sigma", Dimension::length, ColumnRole::guess, "guess_range_sigma_m"},
-    KnownColumn{"guess_speed", Dimension::speed, ColumnRole::guess, "guess_speed_mps"},
-    KnownColumn{"guess_speed_sigma", Dimension::speed, ColumnRole::guess, "guess_speed_sigma_mps"}};
-
 constexpr std::string_view kSourceColumn = "sensor";
 constexpr std::string_view kTruthPrefix = "truth_", kSigmaEnd = "_sigma";
-
-const KnownColumn* find_known(const NameAndUnit& name) {
-  const auto known = std::find_if(kKnown.begin(), kKnown.end(), [&](const KnownColumn& one) {
-    return name.unit && one.stem == name.stem && one.dimension == name.unit->dimension;
-  });
-  return known == kKnown.end() ? nullptr : &*known;
-}
-
-/// "range_km" -> "range_m", "bearing_rad" -> "bearing_deg", "depth_ft" -> "depth_m".
-std::string name_here(const NameAndUnit& name) {
-  const KnownColumn* known = find_known(name);
-  return known ? known->name : name.standard_name();
-}
 
 std::size_t position_in(const std::vector<std::string>& names, std::string_view name) {
   return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
@@ -323,7 +283,7 @@ class LayoutReader {
   // Names of no unit and names of their own, where the log lacks what they look like.
   void look_for_misspelt() {
     std::vector<std::string> known;
-    for (const KnownColumn& one : kKnown) known.emplace_back(one.name);
+    for (const KnownColumn& one : known_columns()) known.emplace_back(one.name);
     for (const std::string& wanted : options_.measured)
       if (!contains(known, wanted)) known.push_back(wanted);
     for (const LogColumn& column : layout_.z) known.push_back(sigma_name(column.quantity));

@@ -24,11 +24,11 @@
 #include "app/track_output.hpp"
 #include "app/track_report.hpp"
 #include "app/track_run.hpp"
+#include "app/track_scores.hpp"
 #include "app/tracked_log.hpp"
 #include "truebearing/array/recorded_array.hpp"
 #include "truebearing/core/constants.hpp"
 #include "truebearing/evaluation/report.hpp"
-#include "truebearing/evaluation/time_steps.hpp"
 #include "truebearing/io/csv.hpp"
 #include "truebearing/io/json_file.hpp"
 #include "truebearing/recording/geographic_track.hpp"
@@ -66,60 +66,6 @@ struct TrackArguments {
   }
   std::vector<std::string> outputs() const { return {output, json, events, report.page}; }
 };
-
-// The log's own measurements as the runs of a comparison, one per track.
-class LogScenario final : public Scenario {
- public:
-  explicit LogScenario(const std::vector<Recording>& tracks) : tracks_(tracks) {}
-  Recording simulate(const RunKey& key) const override { return tracks_[static_cast<std::size_t>(key.run)]; }
-  const StateSpace& truth_space() const override { return *tracks_.front().truth_space; }
-
- private:
-  const std::vector<Recording>& tracks_;
-};
-
-// A bound asks for more than a log may tell: how loud its targets are. It is left out then.
-template <typename Bound>
-void leave_out_unless_told(std::optional<Bound>& bound, const std::vector<Recording>& tracks,
-                           const ScoringRule& scoring) {
-  if (!bound) return;
-  try {
-    for (const Recording& track : tracks) {
-      if constexpr (std::is_same_v<Bound, AngleBound>)
-        static_cast<void>(bound->variances(track, scoring.from_step));
-      else
-        static_cast<void>(bound->variances(track, steps_at(track, scoring.times_s)));
-    }
-  } catch (const InputError& reason) {
-    say(fmt::format("truebearing: the bound is left out: {}", reason.what()));
-    bound.reset();
-  }
-}
-
-struct Scored {
-  Comparison comparison;
-  std::vector<RunPicture> pictures;  // where a report is wanted
-};
-
-Scored score(const Study& study, const TrackArguments& options, const TrackerSet& trackers,
-             std::vector<Recording>& tracks, double epoch_s) {
-  ComparisonOptions comparison_options = study.comparison_options(true);
-  comparison_options.runs = tracks.size();
-  comparison_options.threads = 1;
-  comparison_options.details = options.report.wanted();
-  for (Recording& track : tracks)
-    for (Measurement& measurement : track.measurements) measurement.time_s -= epoch_s;
-  leave_out_unless_told(comparison_options.cramer_rao, tracks, comparison_options.scoring);
-  leave_out_unless_told(comparison_options.angle_bound, tracks, comparison_options.scoring);
-  const LogScenario scenario(tracks);
-  const std::vector<NamedScenario> scenarios{{options.log, &scenario}};
-  Scored scored{compare(trackers, scenarios, comparison_options), {}};
-  if (options.report.wanted())
-    scored.pictures = picture_runs(trackers, scenarios, comparison_options, scored.comparison, sensor_sites(study));
-  scored.comparison.study = study.name() + " on " + options.log;
-  for (double& time_s : scored.comparison.time_s) time_s += epoch_s;
-  return scored;
-}
 
 void report(const Study& study, const TrackArguments& options, const TrackRun& run, const Recording::Counts& rows) {
   fmt::print("{}: {} measurements, {} missing, {} repeated rows dropped\n\n", options.log, run.contents().measurements,
@@ -174,8 +120,10 @@ void finish(const Study& study, const TrackArguments& options, TrackRun& run, co
   std::vector<Recording> tracks;
   for (auto& [number, recording] : logs)
     if (recording.truth_space) tracks.push_back(std::move(recording));
-  std::optional<Scored> scored;
-  if (!tracks.empty()) scored = score(study, options, run.trackers(), tracks, run.contents().epoch_s);
+  std::optional<ScoredLog> scored;
+  if (!tracks.empty())
+    scored = score_log(study, options.log, run.trackers(), std::move(tracks), run.contents().epoch_s,
+                       options.report.wanted());
   run.finish();
   const std::vector<ForetoldLog> told = who_foretells(study, options, run, foretold);
   if (!scored) {
@@ -312,10 +260,6 @@ void track(const TrackArguments& options) {
         fmt::format("`truebearing compare {} --truth {}`, which measures them", options.study, options.log));
   track_rows(study, options);
 }
-
-}  // namespace
-
-namespace {
 
 void add_shared(const Subcommand& command, TrackArguments& options) {
   add_study(command, options.study);

@@ -5,8 +5,7 @@
 
 #include <cmath>
 
-#include <Eigen/LU>
-
+#include "tests/array/joint_angle_prior.hpp"
 #include "tests/support/array_scene.hpp"
 #include "truebearing/core/covariance.hpp"
 
@@ -14,183 +13,14 @@ namespace truebearing::joint_angle_filter_test {
 namespace {
 
 using testing::ArrayScene;
+using testing::joint_angle_prior;
+using testing::kTargets;
 using testing::scene_of;
-
-constexpr int kTargets = 3;
-
-// Any covariance of three targets, whose angles depend on their rates and on each other.
-JointAngleState prior(const ArrayScene& scene, std::uint64_t run = 0, double angle_sigma_rad = 0.02) {
-  RandomStream random({11, Role::evaluation, run}, StreamId::test);
-  JointAngleState state;
-  state.x.resize(3 * kTargets);
-  state.q.setConstant(kTargets, 1e-6);
-  state.innovations.setZero(kTargets);
-  Eigen::VectorXd sigma(3 * kTargets);
-  sigma << Eigen::Vector3d::Constant(angle_sigma_rad), Eigen::Vector3d::Constant(0.5), Eigen::Vector3d::Constant(0.02);
-  Eigen::MatrixXd C(3 * kTargets, 3 * kTargets);
-  for (double& value : C.reshaped()) value = random.normal() / 3.0;
-  const Eigen::MatrixXd correlation = C * C.transpose() + Eigen::MatrixXd::Identity(9, 9);
-  state.P = sigma.asDiagonal() * correlation * sigma.asDiagonal();
-  for (int n = 0; n < kTargets; ++n) {
-    const std::size_t at = static_cast<std::size_t>(n);
-    state.x[n] = scene.angles_rad[at] + 0.3 * angle_sigma_rad * random.normal();
-    state.x[kTargets + n] = std::log(scene.powers[at]) + 0.3 * random.normal();
-    state.x[2 * kTargets + n] = 0.01 * random.normal();
-  }
-  return state;
-}
-
-RealInterval interval(const ArrayScene& scene, std::uint64_t run = 0, int blocks = 1) {
-  RandomStream random({12, Role::evaluation, run}, StreamId::test);
-  RealInterval taken;
-  taken.take(scene.draw_interval(random), blocks);
-  return taken;
-}
-
-JointAngleUpdate::Options converged() {
-  JointAngleUpdate::Options options;
-  options.iterations = 100;
-  return options;
-}
-
-// In information form, which the update avoids: with J at the mode, P+ = (P^-1 + J)^-1 over all states, rates included,
-// and x+ the prior moved along its own correlations to the mode.
-TEST(JointAngleUpdate, PosteriorIsPriorAndFisherInformationTogether) {
-  const ArrayScene scene = scene_of({-35.0, 4.0, 25.0});
-  const int n = 2 * kTargets;
-  JointAngleUpdate update;
-  for (std::uint64_t run = 0; run < 5; ++run) {
-    const JointAngleState before = prior(scene, run);
-    const RealInterval heard = interval(scene, run);
-    JointAngleState after;
-    ASSERT_TRUE(update.run(before, heard, 0.0, before.x.head(n), converged(), after));
-    const SignalVector mode = after.x.head(n);
-    AngleLikelihood likelihood;
-    ASSERT_TRUE(likelihood.evaluate(heard, mode, nullptr, 0.0, 1.0));
-    const Eigen::MatrixXd P = before.P, P_mm = P.topLeftCorner(n, n), J = likelihood.information();
-    Eigen::MatrixXd information = P.inverse();
-    information.topLeftCorner(n, n) += J;
-    const Eigen::MatrixXd expected = information.inverse();
-    for (int i = 0; i < 3 * kTargets; ++i)
-      for (int j = 0; j < 3 * kTargets; ++j)
-        EXPECT_NEAR(after.P(i, j), expected(i, j), 1e-8 * std::sqrt(expected(i, i) * expected(j, j))) << i << " " << j;
-    const Eigen::VectorXd moved = P.leftCols(n) * P_mm.inverse() * (mode - before.x.head(n));
-    for (int i = 0; i < 3 * kTargets; ++i)
-      EXPECT_NEAR(after.x[i], before.x[i] + moved[i], 1e-8 * std::sqrt(P(i, i))) << i;
-    // It is the mode: a hundredth of the posterior's deviation from where prior and likelihood balance, as promised.
-    const Eigen::VectorXd balance = likelihood.gradient() - P_mm.inverse() * Eigen::VectorXd(mode - before.x.head(n));
-    const Eigen::VectorXd to_go = (J + P_mm.inverse()).inverse() * balance;
-    for (int i = 0; i < n; ++i) EXPECT_LT(std::abs(to_go[i]), 0.011 * std::sqrt(P(i, i))) << i;
-    EXPECT_TRUE(is_covariance(after.P));
-    EXPECT_EQ(after.q, before.q);
-  }
-}
-
-// One scoring step of a small prior, within which the likelihood is a parabola: the Kalman update with a measurement of
-// the maximum, of covariance J^-1.
-TEST(JointAngleUpdate, OfASmallPriorIsTheKalmanUpdate) {
-  const ArrayScene scene = scene_of({-35.0, 4.0, 25.0});
-  const int n = 2 * kTargets;
-  JointAngleState before = prior(scene, 0, 1e-5);
-  for (int i = kTargets; i < 2 * kTargets; ++i) {
-    before.P.row(i) *= 1e-3;
-    before.P.col(i) *= 1e-3;
-  }
-  const RealInterval heard = interval(scene);
-  AngleLikelihood likelihood;
-  ASSERT_TRUE(likelihood.evaluate(heard, before.x.head(n), nullptr, 0.0, 1.0));
-  const Eigen::MatrixXd J = likelihood.information(), R = J.inverse(), P = before.P;
-  const Eigen::VectorXd nu = R * likelihood.gradient();
-  const Eigen::MatrixXd K = P.leftCols(n) * (P.topLeftCorner(n, n) + R).inverse();
-  const Eigen::VectorXd x = before.x + K * nu;
-  const Eigen::MatrixXd P_after = P - K * P.topRows(n);
-  JointAngleUpdate update;
-  JointAngleState after;
-  ASSERT_TRUE(update.run(before, heard, 0.0, before.x.head(n), converged(), after));
-  for (int i = 0; i < 3 * kTargets; ++i) {
-    EXPECT_NEAR(after.x[i], x[i], 0.01 * std::sqrt(P(i, i))) << i;
-    EXPECT_NEAR(after.P(i, i), P_after(i, i), 1e-3 * P(i, i)) << i;
-  }
-  EXPECT_GT((after.x - before.x).norm(), 0.0);
-}
-
-TEST(JointAngleUpdate, WithNothingToHearKeepsThePrior) {
-  ArrayScene scene = scene_of({-35.0, 4.0, 25.0});
-  const JointAngleState before = prior(scene);
-  scene.snapshots = 0;
-  RealInterval nothing;
-  nothing.take(scene.interval({}), 1);
-  JointAngleUpdate update;
-  JointAngleState after;
-  if (!update.run(before, nothing, 0.0, before.x.head(6), converged(), after)) return;  // it may refuse
-  EXPECT_LT((after.x - before.x).norm(), 1e-12);
-  EXPECT_LT((after.P - before.P).norm(), 1e-12 * before.P.norm());
-}
-
-TEST(JointAngleUpdate, OrderOfTargetsChangesNothing) {
-  const ArrayScene scene = scene_of({-35.0, 4.0, 25.0});
-  JointAngleState before = prior(scene);
-  sort_targets(before);
-  const std::vector<int> order{2, 0, 1, 5, 3, 4, 8, 6, 7};
-  JointAngleState turned = before;
-  turned.x = SignalVector(before.x(order));
-  turned.P = SignalMatrix(before.P(order, order));
-  JointAngleUpdate update;
-  JointAngleState after, after_turned;
-  const RealInterval heard = interval(scene);
-  ASSERT_TRUE(update.run(before, heard, 0.0, before.x.head(6), {}, after));
-  const double evidence = update.log_evidence();
-  ASSERT_TRUE(update.run(turned, heard, 0.0, turned.x.head(6), {}, after_turned));
-  EXPECT_NEAR(update.log_evidence(), evidence, 1e-9 * std::abs(evidence));
-  sort_targets(after_turned);
-  EXPECT_LT((after_turned.x - after.x).norm(), 1e-9);
-  EXPECT_LT((after_turned.P - after.P).norm(), 1e-9 * after.P.norm());
-}
-
-// Laplace's evidence of a prior that knows everything is the likelihood itself.
-TEST(JointAngleUpdate, EvidenceOfACertainPriorIsTheLikelihood) {
-  const ArrayScene scene = scene_of({-35.0, 4.0, 25.0});
-  JointAngleState before = prior(scene);
-  before.P *= 1e-12;
-  const RealInterval heard = interval(scene);
-  AngleLikelihood likelihood;
-  ASSERT_TRUE(likelihood.evaluate(heard, before.x.head(6), nullptr, 0.0, 1.0));
-  JointAngleUpdate update;
-  JointAngleState after;
-  ASSERT_TRUE(update.run(before, heard, 0.0, before.x.head(6), {}, after));
-  EXPECT_NEAR(update.log_evidence(), likelihood.log_likelihood(), 1e-6 * std::abs(likelihood.log_likelihood()));
-}
-
-TEST(JointAngleUpdate, RefusesWhatIsNoCovariance) {
-  const ArrayScene scene = scene_of({-35.0, 4.0, 25.0});
-  JointAngleState before = prior(scene), after;
-  before.P(0, 0) = -1.0;
-  JointAngleUpdate update;
-  EXPECT_FALSE(update.run(before, interval(scene), 0.0, before.x.head(6), {}, after));
-  before.P(0, 0) = std::nan("");
-  EXPECT_FALSE(update.run(before, interval(scene), 0.0, before.x.head(6), {}, after));
-}
-
-TEST(JointAngleUpdate, CovarianceStaysOneOverManyIntervals) {
-  const ArrayScene scene = scene_of({3.0, 4.0, 25.0});  // two that no beam resolves
-  JointAngleState state = prior(scene);
-  JointAngleUpdate update;
-  for (std::uint64_t k = 0; k < 100; ++k) {
-    JointAngleState after;
-    predict(state, {}, 1.0);
-    ASSERT_TRUE(is_covariance(state.P)) << k;
-    if (!update.run(state, interval(scene, k), 0.0, state.x.head(6), {}, after)) continue;
-    state = after;
-    ASSERT_TRUE(is_covariance(state.P)) << k;
-    EXPECT_EQ(state.P, state.P.transpose());
-  }
-  EXPECT_LT(std::sqrt(state.P(2, 2)), radians(0.2));
-}
 
 TEST(JointAnglePrediction, OfTwoTimesIsOneAfterTheOther) {
   const ArrayScene scene = scene_of({-35.0, 4.0, 25.0});
   const JointAngleMotion motion{.log_power_variance_per_s = 0.01};
-  JointAngleState once = prior(scene), twice = once;
+  JointAngleState once = joint_angle_prior(scene), twice = once;
   const SignalVector x = once.x;
   once.q << 1e-4, 2e-4, 3e-4;
   twice.q = once.q;
@@ -210,7 +40,7 @@ TEST(JointAnglePrediction, OfTwoTimesIsOneAfterTheOther) {
 TEST(JointAnglePrediction, IsThatOfConstantRates) {
   const ArrayScene scene = scene_of({-35.0, 4.0, 25.0});
   const JointAngleMotion motion{.log_power_variance_per_s = 0.01};
-  JointAngleState state = prior(scene);
+  JointAngleState state = joint_angle_prior(scene);
   state.q << 1e-4, 2e-4, 3e-4;
   Eigen::MatrixXd F = Eigen::MatrixXd::Identity(9, 9), Q = Eigen::MatrixXd::Zero(9, 9);
   constexpr double T = 1.5;
@@ -279,7 +109,7 @@ TEST(JointAngleMotion, ProcessNoiseHasOtherLimitsWhileTargetsAreClose) {
 
 TEST(JointAngleState, AddedTargetLeavesTheOthersAlone) {
   const ArrayScene scene = scene_of({-35.0, 4.0, 25.0});
-  const JointAngleState before = prior(scene);
+  const JointAngleState before = joint_angle_prior(scene);
   JointAngleState state = before;
   add_target(state, {.angle_rad = 0.7,
                      .angle_sigma_rad = 0.01,
@@ -309,7 +139,7 @@ TEST(JointAngleState, AddedTargetLeavesTheOthersAlone) {
 
 TEST(JointAngleState, RemovedTargetLeavesTheMarginalOfTheOthers) {
   const ArrayScene scene = scene_of({-35.0, 4.0, 25.0});
-  JointAngleState before = prior(scene);
+  JointAngleState before = joint_angle_prior(scene);
   before.q << 1.0, 2.0, 3.0;
   JointAngleState state = before;
   remove_target(state, 1);
@@ -324,7 +154,7 @@ TEST(JointAngleState, RemovedTargetLeavesTheMarginalOfTheOthers) {
 
 TEST(JointAngleState, SortedTargetsTakeTheirCorrelationsWithThem) {
   const ArrayScene scene = scene_of({25.0, -35.0, 4.0});
-  JointAngleState before = prior(scene);
+  JointAngleState before = joint_angle_prior(scene);
   before.q << 1.0, 2.0, 3.0;
   JointAngleState state = before;
   sort_targets(state);
@@ -340,7 +170,7 @@ TEST(JointAngleState, SortedTargetsTakeTheirCorrelationsWithThem) {
 // A Kalman update of one angle by itself is given back.
 TEST(EquivalentInnovation, IsTheMeasurementThatWouldHaveDoneIt) {
   const ArrayScene scene = scene_of({-35.0, 4.0, 25.0});
-  const JointAngleState before = prior(scene);
+  const JointAngleState before = joint_angle_prior(scene);
   constexpr double kNu = 0.013, kR = 3e-4;
   const double S = before.P(1, 1) + kR;
   JointAngleState after = before;
@@ -358,7 +188,7 @@ TEST(EquivalentInnovation, IsTheMeasurementThatWouldHaveDoneIt) {
 
 TEST(EquivalentInnovation, OfNoUpdateIsFinite) {
   const ArrayScene scene = scene_of({-35.0, 4.0, 25.0});
-  const JointAngleState state = prior(scene);
+  const JointAngleState state = joint_angle_prior(scene);
   const EquivalentInnovation innovation = equivalent_innovation(state, state, 0);
   EXPECT_EQ(innovation.gain, kLeastGain);
   EXPECT_EQ(innovation.nu_rad, 0.0);

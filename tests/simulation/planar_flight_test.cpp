@@ -49,6 +49,25 @@ TEST(PlanarFlight, LegIsStraight) {
   EXPECT_NEAR(track.col(0).tail<2>().norm(), 100.0, 1e-9);
 }
 
+// A straight way is flown in strides; a turn of no rate, sub-step by sub-step as any turn, comes to the same bits.
+TEST(PlanarFlight, StraightLegIsFlownAsATurnOfNoRate) {
+  for (const double period_s : {0.04, 0.1, 0.77, 5.0}) {
+    PlanarFlight straight;
+    straight.leg_s = 1e6;
+    PlanarFlight turning = straight, mixed = straight;
+    turning.leg_s = 0.1;
+    turning.turn_s = 1e6;
+    turning.turn_rate_degps = mixed.turn_rate_degps = 0.0;
+    mixed.leg_s = 3.3;
+    mixed.turn_s = 2.1;
+    for (std::uint64_t run = 0; run < 5; ++run) {
+      const Eigen::Matrix4Xd track = fly(straight, period_s, 100, run);
+      EXPECT_EQ(fly(turning, period_s, 100, run), track) << period_s;
+      EXPECT_EQ(fly(mixed, period_s, 100, run), track) << period_s;
+    }
+  }
+}
+
 TEST(PlanarFlight, TurnIsACircleWhateverThePeriod) {
   PlanarFlight flight;
   flight.leg_s = 0.1;

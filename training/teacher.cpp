@@ -52,15 +52,18 @@ TeacherSet collect_teacher_set(const Ensemble& ensemble, const CorrectionSpec& c
                        "a truth that has every component of the state");
   }
   const std::size_t runs = correction.training.runs;
-  // All ranks have to cut the runs alike, whatever machines they are on.
-  const std::size_t wanted =
-      options.ranks ? runs_together(runs / options.ranks->size(), 1) : runs_together(runs, options.threads);
-  const std::size_t together = ensemble.gains_together() ? wanted : 1;
+  // All ranks have to cut the runs alike, whatever machines they are on. How many of a cut are made together, where
+  // their processors gain by that, is their own.
+  const bool gains = ensemble.gains_together();
+  const std::size_t together = options.ranks ? runs_together(runs / options.ranks->size(), 1)
+                               : gains       ? runs_together(runs, options.threads)
+                                             : 1;
   std::vector<TeacherRows> by_group((runs + together - 1) / together);
   std::vector<std::optional<TeacherRowMakers>> makers(worker_count(options.threads));
   const auto make = [&](std::size_t first, std::size_t count, std::size_t worker) {
     if (!makers[worker])
-      makers[worker].emplace(together, ensemble, correction, truth_space, truth_index, options.whole_tracks);
+      makers[worker].emplace(gains ? together : 1, ensemble, correction, truth_space, truth_index,
+                             options.whole_tracks);
     std::vector<RunKey> keys;
     for (std::size_t run = first; run < first + count; ++run) keys.push_back({options.seed, options.role, run});
     return makers[worker]->rows(scenario, keys);

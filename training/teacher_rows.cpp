@@ -71,10 +71,8 @@ class TeacherRowMakers::Maker {
       take_by_truth(step);
   }
 
-  TeacherRows end() {
-    for (std::size_t part = 1; part < parts_.size(); ++part)
-      parts_[0].insert(parts_[0].end(), parts_[part].begin(), parts_[part].end());
-    return std::move(parts_[0]);
+  void end(TeacherRows& rows) const {
+    for (const TeacherRows& part : parts_) rows.insert(rows.end(), part.begin(), part.end());
   }
 
  private:
@@ -203,7 +201,15 @@ TeacherRowMakers::TeacherRowMakers(std::size_t count, const Ensemble& ensemble, 
 
 TeacherRowMakers::~TeacherRowMakers() = default;
 
-TeacherRows TeacherRowMakers::rows(const Scenario& scenario, const std::vector<RunKey>& keys) {
+TeacherRows TeacherRowMakers::rows(const Scenario& scenario, std::span<const RunKey> keys) {
+  TeacherRows all;
+  for (; keys.size() > makers_.size(); keys = keys.subspan(makers_.size()))
+    add(scenario, keys.first(makers_.size()), all);
+  add(scenario, keys, all);
+  return all;
+}
+
+void TeacherRowMakers::add(const Scenario& scenario, std::span<const RunKey> keys, TeacherRows& rows) {
   std::vector<Recording> recordings;
   for (const RunKey& key : keys) recordings.push_back(scenario.simulate(key));
   std::vector<const Recording*> all_recordings;
@@ -212,21 +218,14 @@ TeacherRows TeacherRowMakers::rows(const Scenario& scenario, const std::vector<R
     all_recordings.push_back(&recordings[i]);
   }
   step_through(*ensembles_, all_recordings, [&](std::size_t i, std::size_t step) { makers_[i]->take(step); });
-  TeacherRows all;
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    const TeacherRows of_run = makers_[i]->end();
-    all.insert(all.end(), of_run.begin(), of_run.end());
-  }
-  return all;
+  for (std::size_t i = 0; i < keys.size(); ++i) makers_[i]->end(rows);
 }
 
 TeacherSet teacher_set_of(const std::vector<TeacherRows>& rows, const std::vector<FeatureSpec>& features,
                           Eigen::Index n, bool whole_tracks, bool by_smoother) {
   const auto d = static_cast<Eigen::Index>(features.size());
-  Eigen::Index total = 0;
+  Eigen::Index total = 0, taught = 0;
   for (const TeacherRows& some : rows) total += static_cast<Eigen::Index>(some.size()) / row_size(d, n);
-  if (total == 0)
-    throw InputError("training", "no step of the training runs can be taught", "records, truth and finite features");
   TeacherSet set{features,
                  Eigen::MatrixXd(total, d),
                  Eigen::MatrixXd(total, n),
@@ -256,8 +255,11 @@ TeacherSet teacher_set_of(const std::vector<TeacherRows>& rows, const std::vecto
       }
     }
     if (by_smoother) set.unsure.middleRows(next, count) = columns.middleRows(part + 3, n).transpose();
+    taught += (columns.row(part + 1).array() != 0.0).count();
     next += count;
   }
+  if (taught == 0)
+    throw InputError("training", "no step of the training runs can be taught", "records, truth and finite features");
   return set;
 }
 

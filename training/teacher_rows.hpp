@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "training/teacher.hpp"
@@ -25,17 +26,19 @@ class TeacherRowMakers {
                    const StateSpace& truth_space, const std::vector<int>& truth_index, bool whole_tracks);
   ~TeacherRowMakers();
 
-  /// Of these runs (`count` at most), one behind another.
-  TeacherRows rows(const Scenario& scenario, const std::vector<RunKey>& keys);
+  /// Of these runs, one behind another.
+  TeacherRows rows(const Scenario& scenario, std::span<const RunKey> keys);
 
  private:
   class Maker;
+
+  void add(const Scenario& scenario, std::span<const RunKey> keys, TeacherRows& rows);
 
   std::vector<std::unique_ptr<Maker>> makers_;
   std::unique_ptr<EnsemblePack> ensembles_;
 };
 
-/// The set of all rows, of states of n components. Throws InputError where there is none.
+/// The set of all rows, of states of n components. Throws InputError where none is taught.
 TeacherSet teacher_set_of(const std::vector<TeacherRows>& rows, const std::vector<FeatureSpec>& features,
                           Eigen::Index n, bool whole_tracks, bool by_smoother);
 

@@ -4,7 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <set>
+#include <span>
+#include <utility>
 
 #include "tests/support/angle_tracks.hpp"
 #include "tests/support/correction_models.hpp"
@@ -187,6 +190,31 @@ TEST(Teacher, WholeTracksHoldTheRowsThatAreNotTaught) {
   }
 }
 
+TEST(Teacher, WholeTracksOfWhichNothingIsTaughtAreRefused) {
+  const LineScenario scenario = testing::radar_family(5);
+  CorrectionSpec late = spec(4);
+  late.training.from_step = 6;
+  for (const bool whole_tracks : {false, true}) {
+    TeacherOptions options;
+    options.whole_tracks = whole_tracks;
+    EXPECT_THAT(error_message([&] { collect_teacher_set(ensemble(), late, scenario, options); }), HasSubstr("no step"));
+  }
+}
+
+TEST(Teacher, RunsWithoutTargetsTeachNothing) {
+  const LineScenario scenario = testing::radar_family(5);
+  const FakeScenario some(scenario.truth_space(), [&](const RunKey& key) {
+    Recording recording = scenario.simulate(key);
+    if (key.run % 2 == 0) recording.truth.clear();
+    return recording;
+  });
+  for (const bool whole_tracks : {false, true}) {
+    TeacherOptions options;
+    options.whole_tracks = whole_tracks;
+    EXPECT_EQ(collect_teacher_set(ensemble(), spec(4), some, options).rows(), 2 * 5);
+  }
+}
+
 // By one thread eight runs at a time, by sixteen one by one.
 TEST(Teacher, RowsAreTheSameForAnyNumberOfThreads) {
   const LineScenario scenario = testing::radar_family(30);
@@ -220,6 +248,39 @@ TEST(Teacher, RanksMayHaveOtherNumbersOfThreads) {
     return numbers(collect_teacher_set(ensemble(), spec(40), scenario, shared));
   });
   EXPECT_EQ(sets[0], one);
+}
+
+// A tracker as it is on a processor whose registers are too short for a pack.
+class AloneTracker final : public Tracker {
+ public:
+  explicit AloneTracker(std::unique_ptr<Tracker> tracker) : tracker_(std::move(tracker)) {}
+  std::span<const StepRecord> step(const Measurement& measurement) override { return tracker_->step(measurement); }
+  void reset() override { tracker_->reset(); }
+  std::unique_ptr<Tracker> fresh() const override { return std::make_unique<AloneTracker>(tracker_->fresh()); }
+  const StateSpace& space() const override { return tracker_->space(); }
+  RecordBlocks blocks() const override { return tracker_->blocks(); }
+
+ private:
+  std::unique_ptr<Tracker> tracker_;
+};
+
+TEST(Teacher, RanksMayHaveProcessorsOfWhichSomeGainNothingTogether) {
+  const LineScenario scenario = testing::radar_family(12);
+  const TeacherOptions options{.seed = 9, .threads = 1, .progress = {}};
+  const Ensemble packed = ensemble();
+  Ensemble alone;
+  for (int member = 0; member < packed.size(); ++member)
+    alone.add(packed.name(member), std::make_unique<AloneTracker>(packed.tracker(member).fresh()));
+  const std::vector<double> one = numbers(collect_teacher_set(packed, spec(40), scenario, options));
+  EXPECT_EQ(numbers(collect_teacher_set(alone, spec(40), scenario, options)), one);
+  for (const std::size_t without : {0u, 1u}) {
+    const auto sets = testing::at_ranks(2, [&](Ranks& ranks) {
+      TeacherOptions shared = options;
+      shared.ranks = &ranks;
+      return numbers(collect_teacher_set(ranks.rank() == without ? alone : packed, spec(40), scenario, shared));
+    });
+    EXPECT_EQ(sets[0], one) << without;
+  }
 }
 
 TEST(Teacher, DrawsItsOwnRoleOnly) {

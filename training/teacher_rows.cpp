@@ -137,11 +137,12 @@ class TeacherRowMakers::Maker {
   }
 
   void take(const StepRecord& base, const Lesson& lesson, bool is_taught, Track& track, TeacherRows& rows) {
+    const CorrectionInputs::Records step = inputs_.records(ensemble_, base.track);
+    if (!step.complete()) return;  // features of which a correction does not hear either
     CorrectionInputs::Features features;
     inputs_.extract(ensemble_, base, track.extractor, features);  // every step, for the averages
-    const CorrectionInputs::Records step = inputs_.records(ensemble_, base.track);
     is_taught = is_taught && base.time_s >= track.next_s;
-    if (!step.complete() || (whole_tracks_ ? !step.agree() || !features.allFinite() : !is_taught)) return;
+    if (whole_tracks_ ? !step.agree() || !features.allFinite() : !is_taught) return;
     // The first step in every interval, so that steps of another period do not drift through it.
     if (is_taught && every_s_ > 0.0) track.next_s = every_s_ * (std::floor(base.time_s / every_s_) + 1.0);
     const OutputUnits units = inputs_.units(track.extractor, base);

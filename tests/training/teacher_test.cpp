@@ -12,16 +12,19 @@
 #include "tests/support/angle_tracks.hpp"
 #include "tests/support/correction_models.hpp"
 #include "tests/support/error_message.hpp"
+#include "tests/support/fakes.hpp"
 #include "tests/support/line_trackers.hpp"
 #include "tests/support/thread_ranks.hpp"
 
 #include "truebearing/core/constants.hpp"
+#include "truebearing/correction/correction.hpp"
 
 namespace truebearing::teacher_test {
 namespace {
 
 using testing::error_message;
 using testing::FakeScenario;
+using testing::FakeTracker;
 using ::testing::HasSubstr;
 using testing::RadarFilter;
 
@@ -337,6 +340,51 @@ TEST(Teacher, FeaturesRememberEveryTrackByItself) {
   EXPECT_EQ(set.X(3, 0), std::log(2.0)) << "features see the steps that are not taught";
   EXPECT_NEAR(set.X(2, 1), std::log(1.0 + (1.0 + 4.0 + 9.0) / 3.0), 1e-12);
   EXPECT_NEAR(set.X(3, 1), std::log(1.0 + (400.0 + 1600.0) / 2.0), 1e-12);
+}
+
+// Where the reference has no record yet, a correction publishes none, and its features have not begun.
+TEST(Teacher, FeaturesAreThoseThatACorrectionAsksItsNetworkWith) {
+  const LineScenario scenario = testing::radar_family(12);
+  const auto told_from = [](std::size_t first) {
+    return std::make_unique<FakeTracker>(
+        line_space(),
+        [first](const Measurement& measurement, std::size_t step, FakeTracker::Said& said) {
+          if (step < first) return;
+          StepRecord record = testing::fake_record(line_space(), measurement, Eigen::Vector2d(measurement.z[0], 0.0),
+                                                   1e6 * Eigen::Matrix2d::Identity());
+          record.innovation =
+              Innovation{measurement.z, measurement.z, BoundedMatrix::Identity(1, 1), 1.0 + static_cast<double>(step)};
+          said.records.push_back(record);
+        },
+        RecordBlocks{.innovation = true});
+  };
+  Ensemble late;
+  late.add("base", told_from(0));
+  late.add("reference", told_from(4));
+  CorrectionSpec correction;
+  correction.design.base = correction.design.covariance_of = "base";
+  correction.design.reference = "reference";
+  correction.design.features = {{.kind = FeatureKind::log_step}, {.kind = FeatureKind::log_mean_nis, .offset = 1.0}};
+  correction.training.runs = 2;
+  const TeacherSet set = collect_teacher_set(late, correction, scenario, {});
+  RandomStream random({}, StreamId::test);
+  Correction corrects(
+      std::make_shared<const CorrectionModel>(testing::line_model(
+          correction.design.features, testing::random_parameters(random, 2, 3, 2), "base", "reference", "base")),
+      late);
+  Eigen::Index row = 0;
+  for (std::uint64_t run = 0; run < 2; ++run) {
+    late.reset();
+    corrects.reset();
+    for (const Measurement& measurement : scenario.simulate({1, Role::training, run}).measurements) {
+      late.step(measurement);
+      if (corrects.correct(late).empty()) continue;
+      ASSERT_TRUE(corrects.accounts()[0].asked());
+      ASSERT_LT(row, set.rows());
+      EXPECT_EQ(set.X.row(row++).transpose(), corrects.accounts()[0].features);
+    }
+  }
+  EXPECT_EQ(row, set.rows());
 }
 
 TEST(Teacher, WholeTracksOfSeveralTargetsComeOneBehindTheOther) {

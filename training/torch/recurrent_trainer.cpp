@@ -127,7 +127,7 @@ void halves(bool two_threads, const std::function<void(int)>& work) {
     return;
   }
   std::exception_ptr failure;
-  std::thread other([&] {
+  std::jthread other([&] {  // which is waited for where this half throws, too
     try {
       one_thread_each();
       work(1);

@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <exception>
@@ -255,6 +256,9 @@ TunedValues tune_tracker(const Study& study, const std::string& name, const Tune
     const std::optional<Tuned> tuned = score_of(logarithms, tracker, runs);
     return tuned ? tuned->cost : std::numeric_limits<double>::max();
   };
+  constexpr std::array kSteps{1.0, 0.3};
+  const int in_a_round = std::max(1, options.max_evaluations / static_cast<int>(kSteps.size()));  // 0: no limit
+  const int most = 1 + static_cast<int>(kSteps.size()) * in_a_round;
   int evaluations = 0;
   std::exception_ptr failure;  // the optimizer would swallow it
   double best = std::numeric_limits<double>::max();
@@ -267,10 +271,8 @@ TunedValues tune_tracker(const Study& study, const std::string& name, const Tune
       failure = std::current_exception();
     }
     best = std::min(best, value);
-    if (options.progress)
-      options.progress(++evaluations, options.max_evaluations, best);
-    else
-      ++evaluations;
+    ++evaluations;
+    if (options.progress) options.progress(evaluations, most, best);
     return value;
   };
   tracker.make(tracker.start());  // the start must be valid
@@ -280,7 +282,7 @@ TunedValues tune_tracker(const Study& study, const std::string& name, const Tune
   // Two rounds: the second from where the first ended, with a fresh simplex, for those that collapse on the way.
   std::vector<double> logarithms = tracker.start();
   double after = before;
-  for (const double step : {1.0, 0.3}) {
+  for (const double step : kSteps) {
     nlopt::opt optimizer(nlopt::LN_NELDERMEAD, static_cast<unsigned>(logarithms.size()));
     optimizer.set_min_objective(
         [](const std::vector<double>& x, std::vector<double>&, void* data) {
@@ -292,7 +294,7 @@ TunedValues tune_tracker(const Study& study, const std::string& name, const Tune
     optimizer.set_initial_step(step);
     optimizer.set_ftol_abs(1e-7);
     optimizer.set_xtol_abs(1e-3);
-    optimizer.set_maxeval(options.max_evaluations / 2);
+    optimizer.set_maxeval(in_a_round);
     optimizer.optimize(logarithms, after);
     if (failure) std::rethrow_exception(failure);
   }

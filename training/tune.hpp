@@ -14,7 +14,7 @@ namespace truebearing {
 struct TuneOptions {
   std::uint64_t seed = 1;
   int threads = 0;
-  int max_evaluations = 600;
+  int max_evaluations = 600;  ///< of the search, in two rounds of half as many; the numbers as they are come before it
   /// Called with (evaluations done, at most, best cost so far); may be empty.
   std::function<void(int, int, double)> progress;
   Ranks* ranks = nullptr;  ///< share the runs of each evaluation; all of them find the same numbers

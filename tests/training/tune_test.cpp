@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/support/error_message.hpp"
 #include "tests/support/radar_study.hpp"
 #include "tests/support/statistics.hpp"
@@ -230,6 +232,24 @@ TEST(Tune, IsTheSameForAnyNumberOfThreads) {
   const TunedValues one = tune(study, "tuned", 1, nullptr, 40);
   EXPECT_EQ(tune(study, "tuned", 2, nullptr, 40), one);
   EXPECT_EQ(tune(study, "tuned", 8, nullptr, 40), one);
+}
+
+TEST(Tune, AsksNoMoreOftenThanItSays) {
+  const TemporaryFolder folder;
+  const Study study = Study::load(testing::write_study(folder));
+  for (const int limit : {1, 2, 6, 7}) {
+    TuneOptions options;
+    options.max_evaluations = limit;
+    int told = 0;
+    options.progress = [&](int done, int most, double) {
+      EXPECT_EQ(done, ++told);
+      EXPECT_LE(done, most);
+      EXPECT_LE(most, std::max(limit, 2) + 1);
+    };
+    TuneReport report;
+    tune_tracker(study, "tuned", options, &report);
+    EXPECT_EQ(report.evaluations, told);
+  }
 }
 
 TEST(Tune, WhatIsNotTunedIsRefused) {

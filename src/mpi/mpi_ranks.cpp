@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ranks over MPI, by its C interface.
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdlib>
+#include <functional>
+#include <list>
 #include <mpi.h>
 #include <thread>
 
@@ -28,8 +31,25 @@ void wait_for(MPI_Request request) {
   }
 }
 
-int part_of(std::size_t left) {
-  return static_cast<int>(std::min(left, kMostAtOnce));
+void for_parts(std::string& bytes, const std::function<void(char* part, int size)>& each) {
+  for (std::size_t done = 0, size = 0; done < bytes.size(); done += size) {
+    size = std::min(bytes.size() - done, kMostAtOnce);
+    each(bytes.data() + done, static_cast<int>(size));
+  }
+}
+
+// A message that MPI has not sent or received yet.
+struct OnTheWay {
+  int rank = 0;
+  std::array<unsigned long, 2> head{};  // number, size
+  std::string bytes;
+  std::vector<MPI_Request> requests;
+};
+
+bool is_through(OnTheWay& message) {
+  int is_done = 0;
+  MPI_Testall(static_cast<int>(message.requests.size()), message.requests.data(), &is_done, MPI_STATUSES_IGNORE);
+  return is_done != 0;
 }
 
 class MpiRanks final : public Ranks {
@@ -46,31 +66,29 @@ class MpiRanks final : public Ranks {
   std::size_t rank() const override { return static_cast<std::size_t>(rank_); }
   std::size_t size() const override { return static_cast<std::size_t>(size_); }
 
-  void send(std::size_t number, std::string_view bytes) override {
-    const unsigned long head[2] = {number, bytes.size()};
-    MPI_Send(head, 2, MPI_UNSIGNED_LONG, 0, kNumber, MPI_COMM_WORLD);
-    while (!bytes.empty()) {
-      const int part = part_of(bytes.size());
-      MPI_Send(bytes.data(), part, MPI_BYTE, 0, kPart, MPI_COMM_WORLD);
-      bytes.remove_prefix(static_cast<std::size_t>(part));
-    }
+  void send(std::size_t to, std::size_t number, std::string bytes) override {
+    forget_sent();
+    OnTheWay& sent = sent_.emplace_back();
+    sent.rank = static_cast<int>(to);
+    sent.bytes = std::move(bytes);
+    sent.head = {number, sent.bytes.size()};
+    MPI_Isend(sent.head.data(), 2, MPI_UNSIGNED_LONG, sent.rank, kNumber, MPI_COMM_WORLD,
+              &sent.requests.emplace_back());
+    for_parts(sent.bytes, [&](char* part, int size) {
+      MPI_Isend(part, size, MPI_BYTE, sent.rank, kPart, MPI_COMM_WORLD, &sent.requests.emplace_back());
+    });
   }
 
-  std::optional<std::pair<std::size_t, std::string>> receive() override {
-    int has_come = 0;
-    MPI_Status status;
-    MPI_Iprobe(MPI_ANY_SOURCE, kNumber, MPI_COMM_WORLD, &has_come, &status);
-    if (has_come == 0) return std::nullopt;
-    unsigned long head[2] = {0, 0};
-    const int source = status.MPI_SOURCE;
-    MPI_Recv(head, 2, MPI_UNSIGNED_LONG, source, kNumber, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-    std::pair<std::size_t, std::string> come{head[0], std::string(head[1], '\0')};
-    for (std::size_t done = 0; done < come.second.size();) {
-      const int part = part_of(come.second.size() - done);
-      MPI_Recv(come.second.data() + done, part, MPI_BYTE, source, kPart, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-      done += static_cast<std::size_t>(part);
+  std::optional<Message> receive() override {
+    forget_sent();
+    begin_to_receive();
+    for (auto it = coming_.begin(); it != coming_.end(); ++it) {
+      if (!is_through(*it)) continue;
+      Message message{static_cast<std::size_t>(it->rank), it->head[0], std::move(it->bytes)};
+      coming_.erase(it);
+      return message;
     }
-    return come;
+    return std::nullopt;
   }
 
   std::vector<std::string> gather_all(std::string_view bytes) override {
@@ -84,17 +102,19 @@ class MpiRanks final : public Ranks {
       std::string& text = all[static_cast<std::size_t>(root)];
       if (root == rank_) text = bytes;
       text.resize(lengths[static_cast<std::size_t>(root)]);
-      for (std::size_t done = 0; done < text.size();) {
-        const int part = part_of(text.size() - done);
-        MPI_Ibcast(text.data() + done, part, MPI_BYTE, root, MPI_COMM_WORLD, &request);
+      for_parts(text, [&](char* part, int size_of_part) {
+        MPI_Ibcast(part, size_of_part, MPI_BYTE, root, MPI_COMM_WORLD, &request);
         wait_for(request);
-        done += static_cast<std::size_t>(part);
-      }
+      });
     }
     return all;
   }
 
-  void leave() override { MPI_Finalize(); }
+  void leave() override {
+    for (OnTheWay& message : sent_)
+      MPI_Waitall(static_cast<int>(message.requests.size()), message.requests.data(), MPI_STATUSES_IGNORE);
+    MPI_Finalize();
+  }
 
   [[noreturn]] void abort() override {
     MPI_Abort(MPI_COMM_WORLD, 1);
@@ -102,7 +122,27 @@ class MpiRanks final : public Ranks {
   }
 
  private:
+  void forget_sent() { sent_.remove_if(is_through); }
+
+  // Of whatever has come its number and size.
+  void begin_to_receive() {
+    for (;;) {
+      int has_come = 0;
+      MPI_Status status;
+      MPI_Iprobe(MPI_ANY_SOURCE, kNumber, MPI_COMM_WORLD, &has_come, &status);
+      if (has_come == 0) return;
+      OnTheWay& message = coming_.emplace_back();
+      message.rank = status.MPI_SOURCE;
+      MPI_Recv(message.head.data(), 2, MPI_UNSIGNED_LONG, message.rank, kNumber, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+      message.bytes.resize(message.head[1]);
+      for_parts(message.bytes, [&](char* part, int size) {
+        MPI_Irecv(part, size, MPI_BYTE, message.rank, kPart, MPI_COMM_WORLD, &message.requests.emplace_back());
+      });
+    }
+  }
+
   int rank_ = 0, size_ = 1;
+  std::list<OnTheWay> sent_, coming_;  // where MPI reads and writes, they stay
 };
 
 std::unique_ptr<Ranks> join() {

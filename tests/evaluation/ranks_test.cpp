@@ -4,13 +4,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <fmt/format.h>
+#include <future>
 #include <numeric>
+#include <thread>
 
 #include "tests/support/error_message.hpp"
 #include "tests/support/line_trackers.hpp"
 #include "tests/support/thread_ranks.hpp"
+#include "truebearing/core/error.hpp"
 #include "truebearing/evaluation/report.hpp"
 
 namespace truebearing::ranks_test {
@@ -59,7 +64,6 @@ TEST(Ranks, DoEachPieceOfWorkOnceAndTheFirstHasAllOfIt) {
       std::vector<std::string> first(items), second(items);
       std::size_t most_done = 0;
       const auto make = [&](std::size_t item, std::size_t worker) {
-        EXPECT_EQ(item % 3, ranks.rank());
         EXPECT_LT(worker, 2u);
         ++made[item];
         return fmt::format("{}", item);
@@ -84,6 +88,73 @@ TEST(Ranks, DoEachPieceOfWorkOnceAndTheFirstHasAllOfIt) {
     EXPECT_THAT(taken[1], Each(""));
     EXPECT_THAT(taken[2], Each(""));
     EXPECT_EQ(std::accumulate(made.begin(), made.end(), 0), static_cast<int>(items));
+  }
+}
+
+// One that waits until all else is made would wait for ever if some of it were its own.
+TEST(Ranks, MakeWhatASlowOneDoesNotComeTo) {
+  constexpr std::size_t kItems = 50;
+  for (const std::size_t slow : {0u, 2u}) {
+    std::atomic<std::size_t> made = 0;
+    const auto by_rank = at_ranks(3, [&](Ranks& ranks) {
+      std::atomic<std::size_t> own = 0;
+      const auto make = [&](std::size_t, std::size_t) {
+        for (int look = 0; ranks.rank() == slow && made < kItems - 1 && look < 5000; ++look)
+          std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        ++own;
+        ++made;
+        return std::string();
+      };
+      share_work(ranks, kItems, 1, make, [](std::size_t, const std::string&) {});
+      return own.load();
+    });
+    EXPECT_LE(by_rank[slow], 1u);
+    EXPECT_EQ(made, kItems);
+  }
+}
+
+// Messages to the first, which are played by hand: a rank with one thread, and what it says before it is answered.
+TEST(Ranks, AskForTheNextItemBeforeTheyNeedItWhereItemsTakeLittleTime) {
+  for (const bool quick : {true, false}) {
+    testing::Wire wire(2);
+    testing::ThreadRanks first(wire, 0), second(wire, 1);
+    std::vector<Ranks::Message> asked;
+    const auto hear = [&](std::size_t count, int most_looks) {
+      for (int look = 0; asked.size() < count && look < most_looks; ++look) {
+        while (std::optional<Ranks::Message> come = first.receive()) asked.push_back(std::move(*come));
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      }
+      return asked.size();
+    };
+    auto work = std::async(std::launch::async, [&] {
+      const auto make = [&](std::size_t, std::size_t) {
+        if (!quick) std::this_thread::sleep_for(std::chrono::milliseconds(60));
+        return std::string("made");
+      };
+      share_work(second, 9, 1, make, [](std::size_t, const std::string&) {});
+    });
+    ASSERT_EQ(hear(1, 5000), 1u);
+    const std::size_t asks = asked[0].number;
+    first.send(1, 7, {});
+    ASSERT_GE(hear(2, 5000), 2u);
+    EXPECT_EQ(hear(3, quick ? 5000 : 50), quick ? 3u : 2u);
+    EXPECT_TRUE(std::any_of(asked.begin(), asked.end(),
+                            [](const Ranks::Message& come) { return come.number == 7 && come.bytes == "made"; }));
+    for (std::size_t i = 1; i < asked.size(); ++i) first.send(1, asks, {});  // nothing is left
+    first.gather_all({});
+    work.get();
+  }
+}
+
+// Which ends the program, where the other threads of the rank wait for work.
+TEST(Ranks, ThrowWhatTheirWorkThrows) {
+  const auto make = [](std::size_t, std::size_t) -> std::string { throw InputError("here", "failed"); };
+  const auto take = [](std::size_t, const std::string&) {};
+  for (const std::size_t rank : {0u, 1u}) {
+    testing::Wire wire(2);
+    testing::ThreadRanks ranks(wire, rank);
+    wire.to[1].push_back({0, 3, {}});
+    EXPECT_THAT(error_message([&] { share_work(ranks, 5, 2, make, take); }), HasSubstr("here: failed"));
   }
 }
 

@@ -19,9 +19,9 @@ namespace truebearing::testing {
 
 // What holds them together.
 struct Wire {
-  explicit Wire(std::size_t count) : said(count), met(static_cast<std::ptrdiff_t>(count)) {}
+  explicit Wire(std::size_t count) : to(count), said(count), met(static_cast<std::ptrdiff_t>(count)) {}
   std::mutex mutex;
-  std::deque<std::pair<std::size_t, std::string>> to_first;
+  std::vector<std::deque<Ranks::Message>> to;  // [rank]
   std::vector<std::string> said;
   std::barrier<> met;
 };
@@ -31,16 +31,17 @@ class ThreadRanks final : public Ranks {
   ThreadRanks(Wire& wire, std::size_t rank) : wire_(wire), rank_(rank) {}
   std::size_t rank() const override { return rank_; }
   std::size_t size() const override { return wire_.said.size(); }
-  void send(std::size_t number, std::string_view bytes) override {
+  void send(std::size_t to, std::size_t number, std::string bytes) override {
     const std::lock_guard lock(wire_.mutex);
-    wire_.to_first.emplace_front(number, bytes);  // the last comes first
+    wire_.to[to].push_front({rank_, number, std::move(bytes)});  // the last comes first
   }
-  std::optional<std::pair<std::size_t, std::string>> receive() override {
+  std::optional<Message> receive() override {
     const std::lock_guard lock(wire_.mutex);
-    if (wire_.to_first.empty()) return std::nullopt;
-    auto come = std::move(wire_.to_first.front());
-    wire_.to_first.pop_front();
-    return come;
+    std::deque<Message>& come = wire_.to[rank_];
+    if (come.empty()) return std::nullopt;
+    Message message = std::move(come.front());
+    come.pop_front();
+    return message;
   }
   std::vector<std::string> gather_all(std::string_view bytes) override {
     wire_.said[rank_] = bytes;

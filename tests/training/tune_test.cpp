@@ -118,8 +118,10 @@ class ThatPart final : public Ranks {
   ThatPart(Ranks& ranks, int exchanges) : ranks_(ranks), left_(exchanges) {}
   std::size_t rank() const override { return ranks_.rank(); }
   std::size_t size() const override { return ranks_.size(); }
-  void send(std::size_t number, std::string_view bytes) override { ranks_.send(number, bytes); }
-  std::optional<std::pair<std::size_t, std::string>> receive() override { return ranks_.receive(); }
+  void send(std::size_t to, std::size_t number, std::string bytes) override {
+    ranks_.send(to, number, std::move(bytes));
+  }
+  std::optional<Message> receive() override { return ranks_.receive(); }
   std::vector<std::string> gather_all(std::string_view bytes) override {
     std::string sent(bytes);
     if (left_-- == 0 && rank() == 1) sent[0] = static_cast<char>(sent[0] ^ 1);

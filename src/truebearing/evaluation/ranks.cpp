@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "truebearing/evaluation/ranks.hpp"
 
+#include <algorithm>
+#include <atomic>
 #include <chrono>
-#include <exception>
+#include <condition_variable>
+#include <deque>
 #include <fmt/format.h>
 #include <future>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <thread>
@@ -15,8 +19,195 @@
 namespace truebearing {
 namespace {
 
-// Rank 0 works too: it looks for what has come, and leaves the processor to its own runs in between.
-constexpr std::chrono::microseconds kBetweenLooks{500};
+using Clock = std::chrono::steady_clock;
+using Make = std::function<std::string(std::size_t item, std::size_t worker)>;
+using Take = std::function<void(std::size_t item, std::string bytes)>;
+
+// How fast a rank's threads make items, and so how often it looks for what has come: a look takes the processor from
+// them, and a message that waits for one delays the next item.
+class Pace {
+ public:
+  void took(Clock::duration item) { last_ = item; }
+  Clock::duration between_looks() const {
+    return std::clamp<Clock::duration>(last_.load() / 4, std::chrono::microseconds(100), std::chrono::milliseconds(2));
+  }
+  // Who makes items fast has the next one before it needs it. Of those that take longer none should lie at a rank
+  // while others are out of work.
+  bool wants_ahead() const {
+    const Clock::duration last = last_;
+    return last > Clock::duration::zero() && last < std::chrono::milliseconds(50);
+  }
+
+ private:
+  std::atomic<Clock::duration> last_ = Clock::duration::zero();  // none yet
+};
+
+// Other ranks send what they made of an item, by which they ask for another. Their numbers besides: they ask, or have
+// made all that they were given. Rank 0 answers with an item, or that nothing is left.
+constexpr std::size_t kAsks = std::numeric_limits<std::size_t>::max(), kHasDone = kAsks - 1, kNothingLeft = kAsks;
+
+// Threads of their own that make items: of a Source, which gives the next one or none, takes what was made, can be told
+// to give no more, and knows their pace.
+template <typename Source>
+std::future<void> at_work(int threads, const Make& make, Source& source) {
+  return std::async(std::launch::async, [threads, &make, &source] {
+    monte_carlo(worker_count(threads), threads, [&](std::size_t, std::size_t worker) {
+      try {
+        while (const std::optional<std::size_t> item = source.next()) {
+          const Clock::time_point begin = Clock::now();
+          std::string bytes = make(*item, worker);
+          source.pace.took(Clock::now() - begin);
+          source.give(*item, std::move(bytes));
+        }
+      } catch (...) {
+        source.stop();
+        throw;
+      }
+    });
+  });
+}
+
+// Throws what the work threw.
+bool has_ended(std::future<void>& work) {
+  if (work.valid() && work.wait_for(std::chrono::seconds(0)) == std::future_status::ready) work.get();
+  return !work.valid();
+}
+
+// At rank 0: the items that nobody has begun, and what was made of the others.
+class AllItems {
+ public:
+  AllItems(std::size_t items, const Take& take, const Progress& progress)
+      : items_(items), take_(take), progress_(progress) {}
+
+  Pace pace;
+  std::optional<std::size_t> next() {
+    const std::size_t item = next_++;
+    return item < items_ ? std::optional(item) : std::nullopt;
+  }
+  void give(std::size_t item, std::string bytes) {
+    const std::lock_guard lock(mutex_);
+    take_(item, std::move(bytes));
+    if (progress_) progress_(++done_, items_);
+  }
+  void stop() { next_ = items_; }
+
+ private:
+  std::size_t items_;
+  const Take& take_;
+  const Progress& progress_;
+  std::atomic<std::size_t> next_ = 0;
+  std::mutex mutex_;
+  std::size_t done_ = 0;
+};
+
+// At another rank: between its threads and the one that talks with rank 0.
+class Desk {
+ public:
+  Pace pace;
+  std::optional<std::size_t> next() {
+    std::unique_lock lock(mutex_);
+    if (items_.empty() && pace.wants_ahead()) ++wanted_;
+    for_threads_.wait(lock, [&] { return is_closed_ || !items_.empty(); });
+    if (is_closed_) return std::nullopt;
+    const std::size_t item = items_.front();
+    items_.pop_front();
+    return item;
+  }
+  void give(std::size_t item, std::string bytes) {
+    const std::lock_guard lock(mutex_);
+    made_.emplace_back(item, std::move(bytes));
+    for_talker_.notify_one();
+  }
+  void stop() {
+    const std::lock_guard lock(mutex_);
+    is_closed_ = true;
+    for_threads_.notify_all();
+  }
+
+  void put(std::size_t item) {
+    const std::lock_guard lock(mutex_);
+    items_.push_back(item);
+    for_threads_.notify_one();
+  }
+  bool has_items() {
+    const std::lock_guard lock(mutex_);
+    return !items_.empty();
+  }
+  struct News {
+    std::vector<std::pair<std::size_t, std::string>> made;
+    std::size_t wanted;  // so many times a thread had to wait
+  };
+  // Waits for some, but not long.
+  News news() {
+    std::unique_lock lock(mutex_);
+    for_talker_.wait_for(lock, pace.between_looks(), [&] { return !made_.empty(); });
+    return {std::exchange(made_, {}), std::exchange(wanted_, 0)};
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable for_threads_, for_talker_;
+  std::deque<std::size_t> items_;
+  std::vector<std::pair<std::size_t, std::string>> made_;
+  std::size_t wanted_ = 0;
+  bool is_closed_ = false;
+};
+
+void work_and_lead(Ranks& ranks, std::size_t items, int threads, const Make& make, const Take& take,
+                   const Progress& progress) {
+  AllItems all(items, take, progress);
+  std::future<void> own = at_work(threads, make, all);
+  try {
+    for (std::size_t others = ranks.size() - 1; others > 0;) {
+      has_ended(own);
+      std::optional<Ranks::Message> come = ranks.receive();
+      if (!come) {
+        std::this_thread::sleep_for(all.pace.between_looks());
+      } else if (come->number == kHasDone) {
+        --others;
+      } else {
+        ranks.send(come->rank, all.next().value_or(kNothingLeft), {});  // before anything that takes time
+        if (come->number != kAsks) all.give(come->number, std::move(come->bytes));
+      }
+    }
+    if (own.valid()) own.get();
+  } catch (...) {
+    all.stop();
+    throw;
+  }
+}
+
+void work_for_first(Ranks& ranks, int threads, const Make& make) {
+  Desk desk;
+  std::future<void> own = at_work(threads, make, desk);
+  try {
+    std::size_t unanswered = 0;
+    const auto send = [&](std::size_t number, std::string bytes) {
+      ranks.send(0, number, std::move(bytes));
+      ++unanswered;
+    };
+    for (std::size_t i = 0; i < worker_count(threads); ++i) send(kAsks, {});
+    for (bool is_any_left = true, have_ended = false; !have_ended || unanswered > 0;) {
+      have_ended = has_ended(own);  // all that they made is among the news then
+      Desk::News news = desk.news();
+      for (auto& [item, bytes] : news.made) send(item, std::move(bytes));
+      for (; is_any_left && news.wanted > 0; --news.wanted) send(kAsks, {});
+      while (const std::optional<Ranks::Message> come = ranks.receive()) {
+        --unanswered;
+        if (come->number == kNothingLeft) {
+          is_any_left = false;
+        } else {
+          desk.put(come->number);
+        }
+      }
+      if (!is_any_left && unanswered == 0 && !desk.has_items()) desk.stop();
+    }
+  } catch (...) {
+    desk.stop();
+    throw;
+  }
+  ranks.send(0, kHasDone, {});
+}
 
 // Gives blocks on in their order, whoever they come from.
 class InOrder {
@@ -63,41 +254,12 @@ BlockRange own_runs(const Ranks* ranks, std::size_t runs) {
 void share_work(Ranks& ranks, std::size_t items, int threads,
                 const std::function<std::string(std::size_t item, std::size_t worker)>& make,
                 const std::function<void(std::size_t item, std::string bytes)>& take, const Progress& progress) {
-  const BlockRange own = own_runs(&ranks, items);
-  std::mutex mutex;
-  const auto do_own = [&](const auto& give) {
-    monte_carlo(own.size(), threads, [&](std::size_t i, std::size_t worker) {
-      const std::size_t item = own.first + i * own.stride;
-      std::string bytes = make(item, worker);
-      const std::lock_guard lock(mutex);
-      give(item, std::move(bytes));
-    });
-  };
-  if (ranks.rank() != 0) {
-    do_own([&](std::size_t item, const std::string& bytes) { ranks.send(item, bytes); });
+  if (ranks.rank() == 0) {
+    work_and_lead(ranks, items, threads, make, take, progress);
   } else {
-    std::size_t done = 0;
-    const auto add = [&](std::size_t item, std::string bytes) {
-      take(item, std::move(bytes));
-      if (progress) progress(++done, items);
-    };
-    std::future<void> computed = std::async(std::launch::async, [&] { do_own(add); });
-    const auto is_ready = [&] {
-      return computed.valid() && computed.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-    };
-    for (std::size_t missing = items - own.size(); missing > 0;) {
-      if (is_ready()) computed.get();  // throws what its own work threw
-      if (auto come = ranks.receive()) {
-        const std::lock_guard lock(mutex);
-        add(come->first, std::move(come->second));
-        --missing;
-      } else {
-        std::this_thread::sleep_for(kBetweenLooks);
-      }
-    }
-    if (computed.valid()) computed.get();
+    work_for_first(ranks, threads, make);
   }
-  ranks.gather_all({});  // nobody sends of the next work while rank 0 receives of this
+  ranks.gather_all({});  // nobody asks for the next work while rank 0 shares out this
 }
 
 void run_blocks(ComparisonRuns& runs, Ranks* ranks, const Progress& progress,

@@ -9,7 +9,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "truebearing/evaluation/comparison_runs.hpp"
@@ -22,10 +21,15 @@ class Ranks {
   /// Of this process, from 0; of all.
   virtual std::size_t rank() const = 0;
   virtual std::size_t size() const = 0;
-  /// To rank 0, from one thread at a time. Waits until it is on its way.
-  virtual void send(std::size_t number, std::string_view bytes) = 0;
-  /// At rank 0: number and bytes of what has come from any rank, or nothing.
-  virtual std::optional<std::pair<std::size_t, std::string>> receive() = 0;
+  struct Message {
+    std::size_t rank;  ///< whom it comes from
+    std::size_t number;
+    std::string bytes;
+  };
+  /// To another rank, from one thread at a time. Waits for nobody: what is long goes on its way as both call receive().
+  virtual void send(std::size_t to, std::size_t number, std::string bytes) = 0;
+  /// What has come from any rank, or nothing. From one thread at a time, as above.
+  virtual std::optional<Message> receive() = 0;
   /// To be called by all: what each of them gave, by rank.
   virtual std::vector<std::string> gather_all(std::string_view bytes) = 0;
   /// To be called by all, at the end.
@@ -51,7 +55,8 @@ BlockRange own_runs(const Ranks* ranks, std::size_t runs);
 
 /// To be called by all: calls make(item, worker) for every item in [0, items) at one of the ranks, on `threads` threads
 /// as monte_carlo() has them, and take(item, bytes) with what it gave at rank 0, in any order, from one thread at a
-/// time. All return once rank 0 has taken the last. progress: of the items that rank 0 has from all.
+/// time. Items are begun in their order, by whoever is free: rank 0, which takes them all, makes fewer. All return once
+/// rank 0 has taken the last. progress: of the items that rank 0 has from all.
 void share_work(Ranks& ranks, std::size_t items, int threads,
                 const std::function<std::string(std::size_t item, std::size_t worker)>& make,
                 const std::function<void(std::size_t item, std::string bytes)>& take, const Progress& progress = {});

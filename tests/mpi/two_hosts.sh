@@ -36,7 +36,7 @@ END
 chmod +x "$scratch/agent"
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 TMPDIR=$scratch
 two_hosts() {
-  on "$a" mpirun --mca plm_rsh_agent "$scratch/agent" --mca btl tcp,self --mca btl_tcp_if_include 10.77.0.0/24 \
+  on "$a" mpirun --mca plm_rsh_agent "$scratch/agent" --mca pml ob1 --mca btl tcp,self --mca btl_tcp_if_include 10.77.0.0/24 \
     --mca oob_tcp_if_include 10.77.0.0/24 --mca orte_keep_fqdn_hostnames 1 --bind-to none -n 2 --host 10.77.0.1:1,10.77.0.2:1 "$@"
 }
 now_ms() { echo $((${EPOCHREALTIME/[.,]/} / 1000)); }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Eight multiple models side by side, mode j of each in the lanes of block j (packed_filters_kernel.hpp): their equations
-// (interacting_multiple_model.hpp), in the order in which one of them is worked on, so to the same bits but for the sign of a zero.
+// Eight multiple models side by side, mode j of each in the lanes of block j (filter_block.hpp): their equations
+// (interacting_multiple_model.hpp), in the order in which one of them is worked on, so to the same bits but for the sign
+// of a zero.
 #pragma once
 
-#include "truebearing/filter/packed_filters_kernel.hpp"
+#include "truebearing/filter/filter_block.hpp"
 
 namespace truebearing::kernels {
 

@@ -19,7 +19,7 @@ struct Predicting {
     using Some = Registers<kWidth>;
     using Doubles = typename Some::Doubles;
     if constexpr (kWidth > 4)
-      if (count <= 4) return predict_loops<4>(transitions, count, filters, moved_filters, good);
+      if (lanes_of(count) <= 4) return predict_loops<4>(transitions, count, filters, moved_filters, good);
     for (int first = 0; first < count; first += kWidth) {
       const TransitionBlock<N>& transition = transitions[first / kBlock];
       List<Doubles, N> x, moved;
@@ -143,7 +143,7 @@ struct Taking {
     using Some = Registers<kWidth>;
     using Doubles = typename Some::Doubles;
     if constexpr (kWidth > 4)
-      if (count <= 4) return take_loops<4>(count, filters, updates, updated, good);
+      if (lanes_of(count) <= 4) return take_loops<4>(count, filters, updates, updated, good);
     for (int first = 0; first < count; first += kWidth) {
       UpdateBlock<N>& update = updates[first / kBlock];
       List<Doubles, N> x;
@@ -187,6 +187,34 @@ struct Taking {
                          (count, filters, updates, updated, good))
 };
 
+template <int N>
+struct Bounding {
+  template <int kWidth>
+  [[gnu::always_inline]] static inline void within_loops(const FilterBlock<N>& filters, int positions, double farthest,
+                                                         FilterMask& within) {
+    using Some = Registers<kWidth>;
+    using Doubles = typename Some::Doubles;
+    const Doubles most = Doubles{} + farthest;
+    for (int first = 0; first < kBlock; first += kWidth) {
+      typename Some::Verdict verdict;
+      for (int i = 0; i < N; ++i) {
+        Doubles x, variance;
+        Some::load(filters.x[i], first, x);
+        Some::load(filters.P[i][i], first, variance);
+        verdict.is_finite(x);
+        verdict.is_finite(variance);
+        if (i >= positions) continue;
+        verdict.is_not_less(x, -most);
+        verdict.is_not_less(most, x);
+        verdict.is_not_less(most * most, variance);
+      }
+      verdict.store(first, within);
+    }
+  }
+  TRUEBEARING_FOR_WIDEST(within, (const FilterBlock<N>& filters, int positions, double farthest, FilterMask& within),
+                         (filters, positions, farthest, within))
+};
+
 }  // namespace
 
 template <int N>
@@ -201,10 +229,16 @@ void update_filters(int count, const FilterBlock<N>* filters, UpdateBlock<N>* up
   Taking<N, M, kPosition>().take(count, filters, updates, updated, good);
 }
 
+template <int N>
+void find_within(const FilterBlock<N>& filters, int positions, double farthest, FilterMask& within) {
+  Bounding<N>().within(filters, positions, farthest, within);
+}
+
 #define TRUEBEARING_PACKED_UPDATE(N, M)                                                                                \
   template void update_filters<N, M, true>(int, const FilterBlock<N>*, UpdateBlock<N>*, FilterBlock<N>*, FilterMask*); \
   template void update_filters<N, M, false>(int, const FilterBlock<N>*, UpdateBlock<N>*, FilterBlock<N>*, FilterMask*)
 #define TRUEBEARING_PACKED_FILTERS(N)                                                                      \
+  template void find_within<N>(const FilterBlock<N>&, int, double, FilterMask&);                           \
   template void predict_filters<N>(const TransitionBlock<N>*, int, const FilterBlock<N>*, FilterBlock<N>*, \
                                    FilterMask*);                                                           \
   TRUEBEARING_PACKED_UPDATE(N, 1)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The mixtures of a multiple model whose modes stand in the lanes of packed_filters_kernel.hpp.
+// The mixtures of a multiple model whose modes stand in the lanes of filter_block.hpp.
 #pragma once
 
-#include "truebearing/filter/packed_filters_kernel.hpp"
+#include "truebearing/filter/filter_block.hpp"
 
 namespace truebearing::kernels {
 

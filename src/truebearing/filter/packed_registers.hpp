@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Filters of packed_filters_kernel.hpp as registers of its loops, and what is asked and summed of them.
+// Filters of filter_block.hpp as registers of its loops, and what is asked and summed of them.
 #pragma once
 
 #include <cstddef>
 
 #include "truebearing/core/simd_width.hpp"
 #include "truebearing/filter/factorization.hpp"
-#include "truebearing/filter/packed_filters_kernel.hpp"
+#include "truebearing/filter/filter_block.hpp"
 
 namespace truebearing::kernels {
 

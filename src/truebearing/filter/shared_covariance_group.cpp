@@ -10,7 +10,7 @@
 #include "truebearing/core/with_count.hpp"
 #include "truebearing/filter/factorization.hpp"
 #include "truebearing/filter/kalman.hpp"
-#include "truebearing/filter/packed_filters_kernel.hpp"
+#include "truebearing/filter/packed_filters.hpp"
 #include "truebearing/filter/shared_covariance_kernel.hpp"
 
 namespace truebearing {
@@ -22,6 +22,7 @@ class SharedCovarianceGroup final : public FilterGroup {
   using State = Eigen::Matrix<double, N, 1>;
   using Covariance = Eigen::Matrix<double, N, N>;
   using Motions = std::vector<std::shared_ptr<const Motion>>;
+  using Blocks = typename PackedFilters<N>::Blocks;
 
  public:
   SharedCovarianceGroup(Motions motions, std::vector<Member> members)
@@ -29,7 +30,8 @@ class SharedCovarianceGroup final : public FilterGroup {
         members_(std::move(members)),
         stride_(static_cast<std::size_t>(padded_to_widest(static_cast<int>(members_.size())))),
         x_(N * stride_),
-        transitions_(motions_.size()) {
+        transitions_(motions_.size()),
+        filters_(0) {
     families_.reserve(members_.size());
     for (std::size_t i = 0; i < members_.size(); ++i) {
       if (i == 0 || members_[i] != members_[i - 1]) families_.push_back({i, i, Covariance::Identity()});
@@ -59,11 +61,11 @@ class SharedCovarianceGroup final : public FilterGroup {
     }
     pack();
     if (!has_transitions_) pack_transitions();
-    kernels::predict_filters<N>(packed_transitions_.data(), count(), packed_.data(), next_.data(), good_.data());
+    filters_.predict(count(), packed_, next_);
     bool valid = true;
     for (std::size_t f = 0; f < families_.size(); ++f) {
       const Family& family = families_[f];
-      if (!is_good(f)) {  // stays as it was
+      if (!filters_.is_valid(f, next_)) {  // P stays as it was
         put(P_of(f), f, next_);
         valid = false;
       }
@@ -80,30 +82,27 @@ class SharedCovarianceGroup final : public FilterGroup {
     for (std::size_t f = 0; f < families_.size(); ++f) {
       const SizedMeasurement<M>* position = position_of(families_[f], measurements);
       if (!position) continue;
-      kernels::UpdateBlock<N>& update = block_of(updates_, f);
-      for (int m = 0; m < M; ++m) {
-        update.nu[m][lane_of(f)] = 0.0;
-        for (int l = 0; l < M; ++l) update.R[m][l][lane_of(f)] = position->R(m, l);
-      }
+      kernels::UpdateBlock<N>& update = kernels::block_of(filters_.updates(), f);
+      kernels::set_lane(Eigen::Matrix<double, M, 1>::Zero(), kernels::lane_of(f), update.nu);
+      kernels::set_lane(position->R, kernels::lane_of(f), update.R);
     }
-    kernels::update_filters<N, M, true>(count(), packed_.data(), updates_.data(), next_.data(), good_.data());
+    filters_.template update<M>(true, count(), packed_, next_);
     for (std::size_t f = 0; f < families_.size(); ++f) {
       const Family& family = families_[f];
       double* of_family = gained.data() + family.first;
       std::fill_n(of_family, family.size(), -kInfinity);
       const SizedMeasurement<M>* position = position_of(family, measurements);
-      const kernels::UpdateBlock<N>& update = block_of(updates_, f);
-      const int lane = lane_of(f);
-      if (!position || !is_positive_semidefinite<M, double>(position->R) || !update.has_gain[lane] || !is_good(f)) {
+      const kernels::UpdateBlock<N>& update = kernels::block_of(filters_.updates(), f);
+      const int lane = kernels::lane_of(f);
+      if (!position || !is_positive_semidefinite<M, double>(position->R) || !update.has_gain[lane] ||
+          !filters_.is_valid(f, next_)) {
         put(P_of(f), f, next_);
         continue;
       }
       Eigen::Matrix<double, N, M> K;
       Eigen::Matrix<double, M, M> S;
-      for (int m = 0; m < M; ++m) {
-        for (int i = 0; i < N; ++i) K(i, m) = update.K[i][m][lane];
-        for (int l = 0; l < M; ++l) S(l, m) = update.S[l][m][lane];
-      }
+      kernels::read_lane(update.K, lane, K);
+      kernels::read_lane(update.S, lane, S);
       const Ldlt<M, double> factors(S, Eigen::Matrix<double, M, 1>::Zero());
       // Of an innovation of zero the log likelihood is the determinant's.
       kernels::take_position<N, M>(position->z.data(), K.data(), factors.L.data(), factors.inverse_D.data(),
@@ -162,24 +161,14 @@ class SharedCovarianceGroup final : public FilterGroup {
 
   double& at(int k, std::size_t i) { return x_[static_cast<std::size_t>(k) * stride_ + i]; }
 
-  // The families' filters, each in a lane, at the origin: F, Q, S, K and P are all that is of interest.
-  using Blocks = std::vector<kernels::FilterBlock<N>>;
-
   int count() const { return static_cast<int>(families_.size()); }
-  static int lane_of(std::size_t family) { return static_cast<int>(family) % kernels::kBlock; }
-  template <typename Block>
-  static Block& block_of(std::vector<Block>& blocks, std::size_t family) {
-    return blocks[family / kernels::kBlock];
-  }
 
   void resize_packed() {
     const auto blocks = static_cast<std::size_t>(kernels::blocks_of(count()));
     if (next_.size() == blocks && packed_.size() == blocks) return;
     packed_.resize(blocks);
     next_.resize(blocks);
-    packed_transitions_.resize(blocks);
-    updates_.resize(blocks);
-    good_.resize(blocks);
+    filters_.resize(blocks);
     has_transitions_ = false;
   }
 
@@ -196,39 +185,16 @@ class SharedCovarianceGroup final : public FilterGroup {
   void pack_transitions() {
     for (std::size_t f = 0; f < families_.size(); ++f) {
       const GivenTransition<N>& of_motion = transitions_[members_[families_[f].first].motion];
-      kernels::TransitionBlock<N>& block = block_of(packed_transitions_, f);
-      for (int i = 0; i < N; ++i)
-        for (int j = 0; j < N; ++j) {
-          block.F[i][j][lane_of(f)] = of_motion.F_dt(i, j);
-          block.Q[i][j][lane_of(f)] = of_motion.Q_dt(i, j);
-        }
+      filters_.set_transition(f, of_motion.F_dt, of_motion.Q_dt);
     }
     has_transitions_ = true;
   }
 
   static void put(const Covariance& P, std::size_t family, Blocks& blocks) {
-    kernels::FilterBlock<N>& block = block_of(blocks, family);
-    for (int i = 0; i < N; ++i) {
-      block.x[i][lane_of(family)] = 0.0;
-      for (int j = 0; j < N; ++j) block.P[i][j][lane_of(family)] = P(i, j);
-    }
+    kernels::block_of(blocks, family).set(kernels::lane_of(family), State::Zero(), P);
   }
-  static Covariance packed_P(const Blocks& blocks, std::size_t family) {
-    Covariance P;
-    for (int i = 0; i < N; ++i)
-      for (int j = 0; j < N; ++j) P(i, j) = blocks[family / kernels::kBlock].P[i][j][lane_of(family)];
-    return P;
-  }
-  Covariance P_of(std::size_t family) const { return is_packed_ ? packed_P(packed_, family) : families_[family].P; }
-
-  // Of next_: plainly positive definite, or at a second look positive semi-definite, and still at the origin.
-  bool is_good(std::size_t family) const {
-    const int lane = lane_of(family);
-    if (good_[family / kernels::kBlock][lane]) [[likely]]
-      return true;
-    for (const kernels::OfFilters& x : next_[family / kernels::kBlock].x)
-      if (x[lane] != 0.0) return false;
-    return is_positive_semidefinite<N, double>(packed_P(next_, family));
+  Covariance P_of(std::size_t family) const {
+    return is_packed_ ? kernels::block_of(packed_, family).P_of(kernels::lane_of(family)) : families_[family].P;
   }
 
   // What a family measures; nothing where it is no position.
@@ -272,11 +238,10 @@ class SharedCovarianceGroup final : public FilterGroup {
   std::vector<GivenTransition<N>> transitions_;  // of the motions
   double transition_dt_s_ = kNaN;
   bool is_packed_ = false;  // the families' P stand in packed_
+  // The families' filters, each in a lane, at the origin: F, Q, S, K and P are all that is of interest.
   Blocks packed_, next_;
-  bool has_transitions_ = false;  // the lanes', of these families over that time
-  std::vector<kernels::TransitionBlock<N>> packed_transitions_;
-  std::vector<kernels::UpdateBlock<N>> updates_;
-  std::vector<kernels::FilterMask> good_;  // of next_
+  PackedFilters<N> filters_;
+  bool has_transitions_ = false;  // those of these families over that time
 };
 
 }  // namespace

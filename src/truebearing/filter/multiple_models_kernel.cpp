@@ -27,6 +27,36 @@ struct OfModes {
   }
 };
 
+// Of the mixtures of what the modes hold as a vector of so many components and as its covariance: mean and covariance.
+template <typename Block, auto kVector, auto kMatrix, int kLength, int kWidth>
+[[gnu::always_inline]] inline void mix_to_one(
+    const Block* modes, int r, const OfModes<kWidth>& share, int first,
+    List<typename Registers<kWidth>::Doubles, kLength>& mean,
+    Table<typename Registers<kWidth>::Doubles, kLength, kLength>& covariance) {
+  using Some = Registers<kWidth>;
+  using Doubles = typename Some::Doubles;
+  OfModes<kWidth> terms;
+  Doubles value, other;
+  for (int i = 0; i < kLength; ++i) {
+    for (int j = 0; j < r; ++j) {
+      Some::load((modes[j].*kVector)[i], first, value);
+      terms.mode[j] = share.mode[j] * value;
+    }
+    terms.sum(r, mean[i]);
+  }
+  for (int i = 0; i < kLength; ++i)
+    for (int k = 0; k <= i; ++k) {
+      for (int j = 0; j < r; ++j) {
+        Some::load((modes[j].*kVector)[i], first, value);
+        Some::load((modes[j].*kVector)[k], first, other);
+        const Doubles square = (value - mean[i]) * (other - mean[k]);
+        Some::load((modes[j].*kMatrix)[i][k], first, value);
+        terms.mode[j] = share.mode[j] * (value + square);
+      }
+      terms.sum(r, covariance[i][k]);
+    }
+}
+
 struct Entering {
   template <int kWidth>
   [[gnu::always_inline]] static inline void weigh_loops(const OfFilters* Pi, const OfFilters* mu, int r, OfFilters* c,
@@ -107,31 +137,11 @@ struct MixingModels {
     using Some = Registers<kWidth>;
     using Doubles = typename Some::Doubles;
     for (int first = 0; first < kBlock; first += kWidth) {
+      OfModes<kWidth> share;
       List<Doubles, N> mean;
       Table<Doubles, N, N> P;
-      OfModes<kWidth> terms;
-      Doubles weight, value;
-      for (int i = 0; i < N; ++i) {
-        for (int j = 0; j < r; ++j) {
-          Some::load(weights[j], first, weight);
-          Some::load(modes[j].x[i], first, value);
-          terms.mode[j] = weight * value;
-        }
-        terms.sum(r, mean[i]);
-      }
-      for (int i = 0; i < N; ++i)
-        for (int k = 0; k <= i; ++k) {
-          for (int j = 0; j < r; ++j) {
-            Doubles other;
-            Some::load(weights[j], first, weight);
-            Some::load(modes[j].x[i], first, value);
-            Some::load(modes[j].x[k], first, other);
-            const Doubles square = (value - mean[i]) * (other - mean[k]);
-            Some::load(modes[j].P[i][k], first, value);
-            terms.mode[j] = weight * (value + square);
-          }
-          terms.sum(r, P[i][k]);
-        }
+      for (int j = 0; j < r; ++j) Some::load(weights[j], first, share.mode[j]);
+      mix_to_one<FilterBlock<N>, &FilterBlock<N>::x, &FilterBlock<N>::P, N>(modes, r, share, first, mean, P);
       Some::store(mean, P, first, mixed);
     }
   }
@@ -147,37 +157,23 @@ struct CombiningModels {
     using Some = Registers<kWidth>;
     using Doubles = typename Some::Doubles;
     for (int first = 0; first < kBlock; first += kWidth) {
-      OfModes<kWidth> share, terms;
+      OfModes<kWidth> share;
       List<Doubles, M> nu;
-      Doubles total{}, value;
+      Table<Doubles, M, M> S;
+      Doubles total{};
       for (int j = 0; j < r; ++j) {
         Some::load(c[j], first, share.mode[j]);
         total += share.mode[j];
       }
       for (int j = 0; j < r; ++j) share.mode[j] /= total;
+      mix_to_one<UpdateBlock<N>, &UpdateBlock<N>::nu, &UpdateBlock<N>::S, M>(updates, r, share, first, nu, S);
       for (int m = 0; m < M; ++m) {
-        for (int j = 0; j < r; ++j) {
-          Some::load(updates[j].nu[m], first, value);
-          terms.mode[j] = share.mode[j] * value;
-        }
-        terms.sum(r, nu[m]);
         Some::store(nu[m], first, combined.nu[m]);
-      }
-      Table<Doubles, M, M> S;
-      for (int m = 0; m < M; ++m)
         for (int l = 0; l <= m; ++l) {
-          for (int j = 0; j < r; ++j) {
-            Doubles other;
-            Some::load(updates[j].nu[m], first, value);
-            Some::load(updates[j].nu[l], first, other);
-            const Doubles square = (value - nu[m]) * (other - nu[l]);
-            Some::load(updates[j].S[m][l], first, value);
-            terms.mode[j] = share.mode[j] * (value + square);
-          }
-          terms.sum(r, S[m][l]);
           Some::store(S[m][l], first, combined.S[m][l]);
           Some::store(S[m][l], first, combined.S[l][m]);
         }
+      }
       Doubles nis{};
       for (int k = 0; k < M; ++k) {  // as mahalanobis_squared() does
         const Doubles pivot = S[k][k] > 0.0 ? S[k][k] : Doubles{} + std::numeric_limits<double>::quiet_NaN();

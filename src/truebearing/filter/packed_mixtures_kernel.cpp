@@ -19,7 +19,7 @@ struct Mixing {
     using Some = Registers<kWidth>;
     using Doubles = typename Some::Doubles;
     if constexpr (kWidth > 4)
-      if (count <= 4) return mix_loops<4>(modes, count, weights, mixed);
+      if (lanes_of(count) <= 4) return mix_loops<4>(modes, count, weights, mixed);
     const int blocks = blocks_of(count);
     for (int first = 0; first < count; first += kWidth) {
       List<Doubles, N> mean;
@@ -47,97 +47,60 @@ struct Mixing {
   }
   TRUEBEARING_FOR_WIDEST(mix, (const FilterBlock<N>* modes, int count, const OfFilters* weights, FilterBlock<N>* mixed),
                          (modes, count, weights, mixed))
+};
 
+// Of the mixture of what blocks hold as a vector of so many components and as its covariance: mean and covariance.
+template <typename Block, auto kVector, auto kMatrix, int kLength>
+struct Moments {
   template <int kWidth>
-  [[gnu::always_inline]] static inline void to_one_loops(const FilterBlock<N>* modes, int count,
-                                                         const OfFilters* weights, double* x, double* P) {
+  [[gnu::always_inline]] static inline void find_loops(const Block* blocks, int count, const OfFilters* weights,
+                                                       double* mean, double* covariance) {
     using Some = Registers<kWidth>;
     using Doubles = typename Some::Doubles;
     if constexpr (kWidth > 4)
-      if (count <= 4) return to_one_loops<4>(modes, count, weights, x, P);
-    List<typename Some::Total, N> means;
-    Table<typename Some::Total, N, N> squares;
+      if (lanes_of(count) <= 4) return find_loops<4>(blocks, count, weights, mean, covariance);
+    List<typename Some::Total, kLength> means;
+    Table<typename Some::Total, kLength, kLength> squares;
     for (int first = 0; first < count; first += kWidth) {
       Doubles weight, value;
       Some::load(weights[first / kBlock], first, weight);
-      for (int i = 0; i < N; ++i) {
-        Some::load(modes[first / kBlock].x[i], first, value);
+      for (int i = 0; i < kLength; ++i) {
+        Some::load((blocks[first / kBlock].*kVector)[i], first, value);
         means[i].add(first, weight * value);
       }
     }
-    for (int i = 0; i < N; ++i) x[i] = means[i].sum();
+    for (int i = 0; i < kLength; ++i) mean[i] = means[i].sum();
     for (int first = 0; first < count; first += kWidth) {
       Doubles weight, value;
-      List<Doubles, N> d;
+      List<Doubles, kLength> d;
       Some::load(weights[first / kBlock], first, weight);
-      for (int i = 0; i < N; ++i) {
-        Some::load(modes[first / kBlock].x[i], first, d[i]);
-        d[i] -= x[i];
+      for (int i = 0; i < kLength; ++i) {
+        Some::load((blocks[first / kBlock].*kVector)[i], first, d[i]);
+        d[i] -= mean[i];
       }
-      for (int i = 0; i < N; ++i)
+      for (int i = 0; i < kLength; ++i)
         for (int j = 0; j <= i; ++j) {
-          Some::load(modes[first / kBlock].P[i][j], first, value);
+          Some::load((blocks[first / kBlock].*kMatrix)[i][j], first, value);
           squares[i][j].add(first, weight * (value + d[i] * d[j]));
         }
     }
-    for (int i = 0; i < N; ++i)
-      for (int j = 0; j <= i; ++j) P[i + j * N] = P[j + i * N] = squares[i][j].sum();
+    for (int i = 0; i < kLength; ++i)
+      for (int j = 0; j <= i; ++j) covariance[i + j * kLength] = covariance[j + i * kLength] = squares[i][j].sum();
   }
-  TRUEBEARING_FOR_WIDEST(to_one,
-                         (const FilterBlock<N>* modes, int count, const OfFilters* weights, double* x, double* P),
-                         (modes, count, weights, x, P))
+  TRUEBEARING_FOR_WIDEST(find,
+                         (const Block* blocks, int count, const OfFilters* weights, double* mean, double* covariance),
+                         (blocks, count, weights, mean, covariance))
 };
 
-// What the modes expected, by weights.
 template <int N, int M>
 struct Combining {
-  template <int kWidth>
-  [[gnu::always_inline]] static inline void innovations_loops(const UpdateBlock<N>* updates, int count,
-                                                              const OfFilters* weights, double* nu, double* S) {
-    using Some = Registers<kWidth>;
-    using Doubles = typename Some::Doubles;
-    if constexpr (kWidth > 4)
-      if (count <= 4) return innovations_loops<4>(updates, count, weights, nu, S);
-    List<typename Some::Total, M> means;
-    Table<typename Some::Total, M, M> squares;
-    for (int first = 0; first < count; first += kWidth) {
-      Doubles weight, value;
-      Some::load(weights[first / kBlock], first, weight);
-      for (int m = 0; m < M; ++m) {
-        Some::load(updates[first / kBlock].nu[m], first, value);
-        means[m].add(first, weight * value);
-      }
-    }
-    for (int m = 0; m < M; ++m) nu[m] = means[m].sum();
-    for (int first = 0; first < count; first += kWidth) {
-      Doubles weight, value;
-      List<Doubles, M> d;
-      Some::load(weights[first / kBlock], first, weight);
-      for (int m = 0; m < M; ++m) {
-        Some::load(updates[first / kBlock].nu[m], first, d[m]);
-        d[m] -= nu[m];
-      }
-      for (int m = 0; m < M; ++m)
-        for (int l = 0; l <= m; ++l) {
-          Some::load(updates[first / kBlock].S[m][l], first, value);
-          value += d[m] * d[l];
-          squares[m][l].add(first, weight * value);
-        }
-    }
-    for (int m = 0; m < M; ++m)
-      for (int l = 0; l <= m; ++l) S[m + l * M] = S[l + m * M] = squares[m][l].sum();
-  }
-  TRUEBEARING_FOR_WIDEST(innovations,
-                         (const UpdateBlock<N>* updates, int count, const OfFilters* weights, double* nu, double* S),
-                         (updates, count, weights, nu, S))
-
   template <int kWidth>
   [[gnu::always_inline]] static inline void gains_loops(const UpdateBlock<N>* updates, int count,
                                                         const OfFilters* weights, double* K) {
     using Some = Registers<kWidth>;
     using Doubles = typename Some::Doubles;
     if constexpr (kWidth > 4)
-      if (count <= 4) return gains_loops<4>(updates, count, weights, K);
+      if (lanes_of(count) <= 4) return gains_loops<4>(updates, count, weights, K);
     Table<typename Some::Total, N, M> totals;
     for (int first = 0; first < count; first += kWidth) {
       Doubles weight, value;
@@ -164,12 +127,12 @@ void mix_modes(const FilterBlock<N>* modes, int count, const OfFilters* weights,
 
 template <int N>
 void mix_to_one(const FilterBlock<N>* modes, int count, const OfFilters* weights, double* x, double* P) {
-  Mixing<N>().to_one(modes, count, weights, x, P);
+  Moments<FilterBlock<N>, &FilterBlock<N>::x, &FilterBlock<N>::P, N>().find(modes, count, weights, x, P);
 }
 
 template <int N, int M>
 void mix_innovations(const UpdateBlock<N>* updates, int count, const OfFilters* weights, double* nu, double* S) {
-  Combining<N, M>().innovations(updates, count, weights, nu, S);
+  Moments<UpdateBlock<N>, &UpdateBlock<N>::nu, &UpdateBlock<N>::S, M>().find(updates, count, weights, nu, S);
 }
 
 template <int N, int M>

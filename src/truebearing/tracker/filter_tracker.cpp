@@ -4,58 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <type_traits>
 #include <utility>
 
 #include "truebearing/core/unfilled.hpp"
-#include "truebearing/core/with_count.hpp"
-#include "truebearing/tracker/publishable.hpp"
 
 namespace truebearing {
 namespace {
 
 // Updates that fail one after another, until the track is given up.
 constexpr int kFailedInRow = 3;
-
-// Whether x (N), P (N x N) are a track at a place that a target can have, known better than not at all; the first
-// `positions` components are its place. Written for few instructions: every step asks twice.
-template <int N>
-EIGEN_ALWAYS_INLINE bool is_sensible(const Eigen::Matrix<double, N, 1>& x, const Eigen::Matrix<double, N, N>& P,
-                                     int positions) {
-  Eigen::Matrix<double, N, 1> sums = x;  // not finite where a number is not; several, for none to wait
-  for (int j = 0; j < N; ++j) sums += P.col(j);
-  double least_variance = P(0, 0);
-  for (int i = 1; i < N; ++i) least_variance = std::min(least_variance, P(i, i));
-  bool sensible = std::isfinite(sums.sum()) & (least_variance >= 0.0);
-  for (int i = 0; i < positions; ++i)
-    sensible &= (std::abs(x(i)) <= kFarthest_m) & (P(i, i) <= kFarthest_m * kFarthest_m);
-  return sensible;
-}
-
-// The first n of N components into x (n), P (n x n). False where it is no track (is_sensible()).
-template <int N>
-[[gnu::noinline]] bool copy_first(const double* from_x, const double* from_P, int n, BoundedVector& x,
-                                  BoundedMatrix& P) {
-  const Eigen::Map<const Eigen::Matrix<double, N, 1>> whole_x(from_x);
-  const Eigen::Map<const Eigen::Matrix<double, N, N>> whole_P(from_P);
-  x = whole_x.head(n);
-  P = whole_P.topLeftCorner(n, n);
-  return is_sensible<N>(whole_x, whole_P, n / 2);
-}
-
-// All of them. They are read once: after that the compiler could not know that x and P are elsewhere.
-template <int N>
-EIGEN_ALWAYS_INLINE bool copy_whole(const double* from_x, const double* from_P, BoundedVector& x, BoundedMatrix& P) {
-  using Vector = Eigen::Matrix<double, N, 1>;
-  using Matrix = Eigen::Matrix<double, N, N>;
-  const Vector whole_x = Eigen::Map<const Vector>(from_x);
-  const Matrix whole_P = Eigen::Map<const Matrix>(from_P);
-  x.resize(N);
-  P.resize(N, N);
-  Eigen::Map<Vector>(x.data()) = whole_x;
-  Eigen::Map<Matrix>(P.data()) = whole_P;
-  return is_sensible<N>(whole_x, whole_P, N / 2);
-}
 
 }  // namespace
 
@@ -301,7 +258,7 @@ StepStatus FilterTracker::update(const Measurement& measurement) {
       return StepStatus::ok;
     }
   }
-  if (options_.output_pull > 0.0) with_length(taken, [&](const auto& sized) { pull(sized); });
+  if (options_.output_pull > 0.0) pull(taken);
   if (space_->size() < state_->size()) gain.conservativeResize(space_->size(), Eigen::NoChange);
   return StepStatus::ok;
 }
@@ -327,48 +284,6 @@ std::span<const StepRecord> FilterTracker::refuse() {
   clear_blocks();
   record_.status = StepStatus::rejected;
   return {&record_, 1};
-}
-
-// With the gain K' = K + beta G (I - H K), G = [I; 0], in place of K: the covariance grows by (K' - K) S (K' - K)'.
-// H = [I, 0].
-template <int M>
-void FilterTracker::pull(const SizedMeasurement<M>& measurement) {
-  using Vector = Eigen::Matrix<double, M, 1>;
-  using Square = Eigen::Matrix<double, M, M>;
-  const Vector position = state_->x().template head<M>();
-  const Square S = record_.innovation->S;
-  const Square left = Square::Identity() - Square(record_.gain->template topRows<M>());
-  moved_ = options_.output_pull * (measurement.z - position);
-  spread_ = options_.output_pull * options_.output_pull * left * S * left.transpose();
-}
-
-// False where the state is no track; what it is stands in the record all the same. Where it cannot be carried so far
-// ahead, the record says `failed`, and the filter goes on.
-bool FilterTracker::publish() {
-  const bool sensible = copy_published(state_->x_data(), state_->P_data(), record_.x, record_.P);
-  if (ahead_) {
-    ahead_->assign(*state_);
-    const bool crossed = ahead_->predict(options_.ahead_s) == StepStatus::ok;
-    if (!copy_published(ahead_->x_data(), ahead_->P_data(), record_.x, record_.P) || !crossed)
-      record_.status = StepStatus::failed;
-  }
-  if (options_.output_pull > 0.0 && record_.gain) {
-    record_.x.head(moved_.size()) += moved_;
-    record_.P.topLeftCorner(moved_.size(), moved_.size()) += spread_;
-  }
-  if (const ModeVector* probabilities = state_->mode_probabilities()) record_.mode_probabilities = *probabilities;
-  return sensible;
-}
-
-// Without the components that the space does not have. False where the state is no track (is_sensible()).
-bool FilterTracker::copy_published(const double* from_x, const double* from_P, BoundedVector& x,
-                                   BoundedMatrix& P) const {
-  const int n = space_->size();
-  bool sensible = true;
-  with_count(state_->size(), [&]<int N>(std::integral_constant<int, N>) {
-    sensible = n == N ? copy_whole<N>(from_x, from_P, x, P) : copy_first<N>(from_x, from_P, n, x, P);
-  });
-  return sensible;
 }
 
 void FilterTracker::clear_blocks() {

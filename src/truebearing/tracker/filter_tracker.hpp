@@ -64,8 +64,8 @@ class FilterTracker : public Successor {
   RecordBlocks blocks() const override;
   TrackerCounts counts() const override { return guard_.counts; }
 
-  /// At the last used measurement, or as the track began; means nothing where is_lost(). Not at the same time as another
-  /// call, though const: the state may have to be fetched from a pack.
+  /// At the last used measurement, or as the track began; means nothing where is_lost(). Not at the same time as
+  /// another call, though const: the state may have to be fetched from a pack.
   const TrackedState& state() const {
     fetch_state();
     return *state_;
@@ -96,16 +96,17 @@ class FilterTracker : public Successor {
   bool predict(double dt_s);
   StepStatus update(const Measurement& measurement);
   std::span<const StepRecord> refuse();
-  template <int M>
-  void pull(const SizedMeasurement<M>& measurement);
-  bool publish();
   void clear_blocks();
+
+  // What is published (filter_tracker_publishing.cpp).
+  bool publish();
   bool copy_published(const double* from_x, const double* from_P, BoundedVector& x, BoundedMatrix& P) const;
+  void copy_published(const StatePack& pack, int lane, BoundedVector& x, BoundedMatrix& P) const;
+  void pull(const AnyMeasurement& taken);
 
   // Of a step in a pack (filter_tracker_pack.cpp).
   bool is_ordinary(const Measurement& measurement) const;
   bool settle(const StatePack& pack, int lane, const Measurement& measurement, const AnyMeasurement& taken);
-  void show(const StatePack& pack, int lane, BoundedVector& x, BoundedMatrix& P) const;
   void fetch_state() const;
 
   const StateSpace* space_;

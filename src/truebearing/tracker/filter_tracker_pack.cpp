@@ -21,11 +21,10 @@ void FilterTrackerPack::step(std::span<Lane> lanes) {
   std::array<const AnyMeasurement*, kPackLanes> taken{};
   const auto tracker_of = [](const Lane& lane) -> FilterTracker& { return static_cast<FilterTracker&>(*lane.tracker); };
   const auto each_of = [&](LaneMask some, const auto& body) {
-    for (int place = 0; place < kPackLanes; ++place)
-      if (has_lane(some, place)) {
-        Lane& lane = *in[static_cast<std::size_t>(place)];
-        body(place, tracker_of(lane), lane);
-      }
+    for_each_lane(some, [&](int place) {
+      Lane& lane = *in[static_cast<std::size_t>(place)];
+      body(place, tracker_of(lane), lane);
+    });
   };
 
   LaneMask together = 0;
@@ -54,7 +53,7 @@ void FilterTrackerPack::step(std::span<Lane> lanes) {
   each_of(done, [&](int place, FilterTracker& tracker, Lane& lane) {
     tracker.begin_record(*lane.measurement);
     Prediction& prediction = tracker.record_.prediction.emplace(Unfilled());
-    tracker.show(*states_, place, prediction.x, prediction.P);
+    tracker.copy_published(*states_, place, prediction.x, prediction.P);
     taken[static_cast<std::size_t>(place)] = &tracker.sensor_->take(*lane.measurement, prediction);
   });
   done = sensible(states_->update(done, taken.data()));
@@ -62,10 +61,10 @@ void FilterTrackerPack::step(std::span<Lane> lanes) {
     if (tracker.settle(*states_, place, *lane.measurement, *taken[static_cast<std::size_t>(place)]))
       lane.records = {&tracker.record_, 1};
     else
-      done &= static_cast<LaneMask>(~lane_bit(place));
+      done = without(done, lane_bit(place));
   });
   // Those that go on alone take with them what was held before this step.
-  each_of(static_cast<LaneMask>(together & ~done),
+  each_of(without(together, done),
           [](int, FilterTracker& tracker, Lane& lane) { lane.records = tracker.go_on(*lane.measurement); });
   states_->keep(done);
 }
@@ -94,7 +93,7 @@ bool FilterTracker::settle(const StatePack& pack, int lane, const Measurement& m
   pack.update_of(lane, {innovation.nu, innovation.S, gain, innovation.nis});
   Gate& gate = gate_of(measurement);
   if (!std::isfinite(innovation.nis) || innovation.nis > gate.threshold()) return false;
-  show(pack, lane, record_.x, record_.P);
+  copy_published(pack, lane, record_.x, record_.P);
   gate.judge(innovation.nis);
   forget_challenger();
   failed_in_row_ = 0;
@@ -105,16 +104,6 @@ bool FilterTracker::settle(const StatePack& pack, int lane, const Measurement& m
   passage_.used = true;
   used_time_s_ = measurement.time_s;
   return true;
-}
-
-void FilterTracker::show(const StatePack& pack, int lane, BoundedVector& x, BoundedMatrix& P) const {
-  const int n = space_->size(), all = state_->size();
-  x.resize(all);
-  P.resize(all, all);
-  pack.estimate(lane, x.data(), P.data());
-  if (n == all) return;
-  x.conservativeResize(n);
-  P.conservativeResize(n, n);
 }
 
 void FilterTracker::fetch_state() const {

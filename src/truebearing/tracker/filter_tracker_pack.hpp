@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // FilterTrackers stepped together. An ordinary step, a usable measurement later than the last that was used, which the
-// gate lets pass and the filter takes without ado, goes through a StatePack; a tracker that meets anything else takes that
-// step by itself.
+// gate lets pass and the filter takes without ado, goes through a StatePack; a tracker that meets anything else takes
+// that step by itself.
 #pragma once
 
 #include <memory>

@@ -33,8 +33,8 @@ std::span<const StepRecord> FilterTracker::start_from(const Measurement& measure
   return {&record_, 1};
 }
 
-// The state that a measurement begins, with the one before it where it needs two. Nothing where that is not there, or so
-// long ago that the target would be lost, or where measurements, or that sensor's, begin no track.
+// The state that a measurement begins, with the one before it where it needs two. Nothing where that is not there, or
+// so long ago that the target would be lost, or where measurements, or that sensor's, begin no track.
 std::optional<PriorStart> FilterTracker::start_at(const std::optional<Measurement>& waiting,
                                                   const Measurement& measurement) {
   const int n = state_->size();

@@ -13,8 +13,8 @@
 #include "truebearing/filter/filter_kinds.hpp"
 #include "truebearing/filter/interacting_multiple_model.hpp"
 #include "truebearing/filter/separate_modes.hpp"
+#include "truebearing/measurement/bearing.hpp"
 #include "truebearing/measurement/cartesian_position.hpp"
-#include "truebearing/measurement/longer_state.hpp"
 #include "truebearing/measurement/range_bearing.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
 #include "truebearing/motion/coordinated_turn.hpp"
@@ -118,6 +118,50 @@ TEST_P(PackedModesOf, AreTheSeparateOnesByRangeAndBearing) {
 INSTANTIATE_TEST_SUITE_P(Counts, PackedModesOf, ::testing::Values(2, 4, 6, 9, 10),
                          [](const auto& count) { return "Modes" + std::to_string(count.param); });
 
+// Sensors that take turns, of other kinds and lengths, each as good as it says this time; intervals too.
+TEST_P(PackedModesOf, AreToldEveryMeasurementAnew) {
+  RandomStream random({1, Role::evaluation, 2}, StreamId::test);
+  run_both(GetParam(), true, [&](int step, const auto& x) -> std::unique_ptr<AnyMeasurement> {
+    const Eigen::Vector2d site(-500.0, 800.0 + step);
+    const double sigma_m = 30.0 + 5.0 * (step % 3), sigma_rad = 0.01 + 0.002 * (step % 2);
+    const Eigen::Vector2d noise_m = sigma_m * Eigen::Vector2d(random.normal(), random.normal());
+    const CartesianPosition<2> position{Eigen::Vector2d(sigma_m * sigma_m, 900.0).asDiagonal().toDenseMatrix()};
+    const RangeBearing<> polar{.site_m = site, .sigma_range_m = sigma_m, .sigma_bearing_rad = sigma_rad};
+    const Bearing<> bearing{site, Eigen::Vector2d::Zero(), sigma_rad};
+    switch (step * 7 % 5) {
+      case 0:
+        return std::make_unique<ErasedMeasurement<Bearing<>>>(bearing, bearing.h(x));
+      case 1:
+      case 2:
+        return std::make_unique<ErasedMeasurement<RangeBearing<>>>(
+            polar, polar.h(x) + Eigen::Vector2d(noise_m[0], sigma_rad * random.normal()));
+      default:
+        return std::make_unique<ErasedMeasurement<CartesianPosition<2>>>(position, x.template head<2>() + noise_m,
+                                                                         true);
+    }
+  });
+}
+
+// The last one stands in several lanes.
+TEST_P(PackedModesOf, MayBeginApartAndBeCopied) {
+  const std::unique_ptr<ModeBank> packed = packed_modes(modes_of(GetParam(), true));
+  SeparateModes separate(modes_of(GetParam(), true));
+  for (int mode = 0; mode < GetParam(); ++mode) {
+    const Eigen::Vector4d x = (1.0 + 0.1 * mode) * kX0;
+    const Eigen::Matrix4d P = (1.0 + 0.2 * mode) * kP0;
+    packed->begin_mode(mode, x.data(), P.data());
+    separate.begin_mode(mode, x.data(), P.data());
+  }
+  expect_same(*packed, separate, GetParam());
+  const std::unique_ptr<ModeBank> copy = packed->fresh();
+  copy->assign(*packed);
+  ASSERT_TRUE(separate.mix_and_predict(mixing_of(GetParam()), 1.5));
+  for (ModeBank* bank : {packed.get(), copy.get()}) {
+    ASSERT_TRUE(bank->mix_and_predict(mixing_of(GetParam()), 1.5));
+    expect_same(*bank, separate, GetParam());
+  }
+}
+
 TEST(PackedModes, AreThoseOfOneKindAndLength) {
   EXPECT_TRUE(packed_modes(modes_of(3, true)));
   ModeBank::Modes mixed = modes_of(3, false);
@@ -145,7 +189,6 @@ TEST(PackedModes, FailWhereSeparateOnesDo) {
   EXPECT_EQ(gained, ModeVector::Constant(6, -kInfinity));
 }
 
-// An exact position that one mode is as sure of, and cannot take; the other can.
 // Of a motion that goes nowhere from some states, though its F is known there.
 struct Rooted : Bent {
   Eigen::Vector4d f(const State& x, double dt_s) const {
@@ -175,6 +218,7 @@ TEST(PackedModes, FailWhereAMotionComesToNoNumber) {
   EXPECT_FALSE(crosses(-100.0));
 }
 
+// An exact position that one mode is as sure of, and cannot take; the other can.
 TEST(PackedModes, OneThatFailsStaysWhereItWasPredicted) {
   const auto two = [] {
     ModeBank::Modes modes;

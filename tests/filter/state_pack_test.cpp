@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tests/filter/bent_motion.hpp"
+#include "tests/filter/same_in_pack.hpp"
 #include "truebearing/core/constants.hpp"
 #include "truebearing/core/random.hpp"
 #include "truebearing/filter/filter_kinds.hpp"
@@ -18,6 +19,8 @@
 #include "truebearing/measurement/cartesian_position.hpp"
 #include "truebearing/measurement/position.hpp"
 #include "truebearing/measurement/range_bearing.hpp"
+#include "truebearing/measurement/range_bearing_elevation.hpp"
+#include "truebearing/measurement/range_bearing_elevation_rate.hpp"
 #include "truebearing/motion/constant_velocity.hpp"
 #include "truebearing/motion/coordinated_turn.hpp"
 
@@ -28,7 +31,6 @@ using truebearing::testing::Bent;
 
 using Noise = DiscreteWhiteNoise;
 using Taken = std::unique_ptr<AnyMeasurement>;
-constexpr LaneMask kAll = 0xff;
 
 std::unique_ptr<TrackedState> multiple_model(int modes, bool bent) {
   InteractingMultipleModel::Modes made;
@@ -69,14 +71,7 @@ struct Both {
 
   TrackedState& state(int lane) { return *own[static_cast<std::size_t>(lane)]; }
 
-  void expect_same_estimate(int lane) {
-    const int n = state(lane).size();
-    BoundedVector x(n);
-    BoundedMatrix P(n, n);
-    pack->estimate(lane, x.data(), P.data());
-    EXPECT_EQ(x, state(lane).x()) << "lane " << lane;
-    EXPECT_EQ(P, state(lane).P()) << "lane " << lane;
-  }
+  void expect_same_estimate(int lane) { truebearing::testing::expect_same_estimate(*pack, lane, state(lane)); }
 
   void predict(LaneMask lanes, const std::array<double, kPackLanes>& dt_s) {
     ASSERT_EQ(pack->predict(lanes, dt_s.data()), lanes);
@@ -93,19 +88,9 @@ struct Both {
     ASSERT_EQ(pack->update(lanes, measurements.data()), lanes);
     for (int lane = 0; lane < kPackLanes; ++lane) {
       if (!has_lane(lanes, lane)) continue;
-      StateUpdate mine, packed;
+      StateUpdate mine;
       ASSERT_EQ(state(lane).update(*taken[static_cast<std::size_t>(lane)], mine), StepStatus::ok);
-      pack->update_of(lane, packed);
-      EXPECT_EQ(packed.nu, mine.nu) << "lane " << lane;
-      EXPECT_EQ(packed.S, mine.S) << "lane " << lane;
-      EXPECT_EQ(packed.K, mine.K) << "lane " << lane;
-      EXPECT_EQ(packed.nis, mine.nis) << "lane " << lane;
-      expect_same_estimate(lane);
-      if (const ModeVector* mu = state(lane).mode_probabilities()) {
-        ModeVector packed_mu;
-        pack->mode_probabilities(lane, packed_mu);
-        EXPECT_EQ(packed_mu, *mu) << "lane " << lane;
-      }
+      truebearing::testing::expect_same_update(*pack, lane, state(lane), mine);
     }
     pack->keep(lanes);
   }
@@ -135,7 +120,7 @@ void expect_the_states_own(const TrackedState& prototype, Taken (*look)(const Ei
     std::array<double, kPackLanes> dt_s = all_after(step % 7 == 0 ? 2.5 : 1.0);
     if (step % 5 == 0)
       for (std::size_t lane = 0; lane < dt_s.size(); ++lane) dt_s[lane] += 0.1 * static_cast<double>(lane);
-    const LaneMask lanes = step % 4 == 3 ? 0x5b : kAll;  // the others stay where they are
+    const LaneMask lanes = step % 4 == 3 ? 0x5b : kAllLanes;  // the others stay where they are
     both.predict(lanes, dt_s);
     both.update(lanes, both.looks(look, polar));
     if (::testing::Test::HasFatalFailure()) return;
@@ -184,7 +169,7 @@ void expect_positions_of(std::unique_ptr<TrackedState> prototype) {
   Both both(*prototype);
   if (!both.pack) GTEST_SKIP() << "no pack on this processor";
   for (int step = 0; step < 10; ++step) {
-    both.predict(kAll, all_after(1.0));
+    both.predict(kAllLanes, all_after(1.0));
     std::array<Taken, kPackLanes> taken;
     for (int lane = 0; lane < kPackLanes; ++lane) {
       Eigen::Matrix<double, M, 1> z = both.state(lane).x().template head<M>();
@@ -192,7 +177,7 @@ void expect_positions_of(std::unique_ptr<TrackedState> prototype) {
       const Sensor sensor{(100.0 + lane) * Eigen::Matrix<double, M, M>::Identity()};
       taken[static_cast<std::size_t>(lane)] = std::make_unique<ErasedMeasurement<Sensor>>(sensor, z, true);
     }
-    both.update(kAll, taken);
+    both.update(kAllLanes, taken);
     if (::testing::Test::HasFatalFailure()) return;
   }
 }
@@ -200,6 +185,30 @@ void expect_positions_of(std::unique_ptr<TrackedState> prototype) {
 TEST(StatePack, IsOfTheLineAndOfSpaceToo) {
   expect_positions_of<2>(state_of<KalmanFilter<2>>(ConstantVelocity<1, Noise>{{0.5}}));
   expect_positions_of<6>(state_of<KalmanFilter<6>>(ConstantVelocity<3, Noise>{{0.5}}));
+}
+
+// By three components and by four, the longest that there are.
+template <typename Sensor>
+void expect_looks_in_space(const Sensor& sensor) {
+  Both both(*state_of<KalmanFilter<6>>(ConstantVelocity<3, Noise>{{0.5}}));
+  if (!both.pack) GTEST_SKIP() << "no pack on this processor";
+  for (int step = 0; step < 10; ++step) {
+    both.predict(kAllLanes, all_after(1.0));
+    std::array<Taken, kPackLanes> taken;
+    for (int lane = 0; lane < kPackLanes; ++lane) {
+      typename Sensor::Vector z = sensor.h(both.state(lane).x());
+      for (int m = 0; m < Sensor::kMeasurements; ++m) z[m] += sensor.sigma[m] * both.random.normal();
+      taken[static_cast<std::size_t>(lane)] = std::make_unique<ErasedMeasurement<Sensor>>(sensor, z);
+    }
+    both.update(kAllLanes, taken);
+    if (::testing::Test::HasFatalFailure()) return;
+  }
+}
+
+TEST(StatePack, LanesInSpaceAreSeenByRadars) {
+  const Eigen::Vector3d site(-500.0, 800.0, 20.0);
+  expect_looks_in_space(RangeBearingElevation<>{site, {30.0, 0.01, 0.01}});
+  expect_looks_in_space(RangeBearingElevationRate<>{site, {1.0, -2.0, 0.0}, {30.0, 0.01, 0.01, 2.0}});
 }
 
 TEST(StatePack, IsOfKalmanFiltersInTheDefaultFormAndOfModelsOfThem) {
@@ -214,22 +223,22 @@ TEST(StatePack, IsOfKalmanFiltersInTheDefaultFormAndOfModelsOfThem) {
 // One lane that goes wrong says so, and keeps what it held; the others do not notice.
 TEST(StatePack, IsNotCertainOfWhatGoesWrong) {
   constexpr int kWrong = 3;
-  constexpr LaneMask kOthers = kAll & static_cast<LaneMask>(~lane_bit(kWrong));
+  constexpr LaneMask kOthers = without(kAllLanes, lane_bit(kWrong));
   for (const bool multiple : {false, true}) {
     const std::unique_ptr<TrackedState> prototype =
         multiple ? multiple_model(3, false) : state_of<KalmanFilter<4>>(ConstantVelocity<2, Noise>{{0.5}});
     Both both(*prototype);
     if (!both.pack) GTEST_SKIP() << "no pack on this processor";
-    both.predict(kAll, all_after(1.0));
-    both.update(kAll, both.looks(position, false));
+    both.predict(kAllLanes, all_after(1.0));
+    both.update(kAllLanes, both.looks(position, false));
     const BoundedVector x = both.state(kWrong).x();
     const BoundedMatrix P = both.state(kWrong).P();
 
     std::array<double, kPackLanes> dt_s = all_after(1.0);
     dt_s[kWrong] = kInfinity;
-    EXPECT_EQ(both.pack->predict(kAll, dt_s.data()), kOthers);
+    EXPECT_EQ(both.pack->predict(kAllLanes, dt_s.data()), kOthers);
     for (const int wrong : {0, 1, 2}) {
-      EXPECT_EQ(both.pack->predict(kAll, all_after(1.0).data()), kAll);
+      EXPECT_EQ(both.pack->predict(kAllLanes, all_after(1.0).data()), kAllLanes);
       std::array<Taken, kPackLanes> taken = both.looks(position, false);
       if (wrong == 0)  // no number
         taken[kWrong] = position(Eigen::Vector2d(kNaN, 0.0));
@@ -241,7 +250,7 @@ TEST(StatePack, IsNotCertainOfWhatGoesWrong) {
         taken[kWrong] = range_and_bearing(Eigen::Vector2d(3000.0, 0.5));
       std::array<const AnyMeasurement*, kPackLanes> measurements{};
       for (std::size_t i = 0; i < taken.size(); ++i) measurements[i] = taken[i].get();
-      EXPECT_EQ(both.pack->update(kAll, measurements.data()), kOthers) << wrong;
+      EXPECT_EQ(both.pack->update(kAllLanes, measurements.data()), kOthers) << wrong;
       StateUpdate update;
       for (int lane = 0; lane < kPackLanes; ++lane) {
         if (lane == kWrong) continue;

@@ -19,6 +19,7 @@
 #include "truebearing/tracker/filter_tracker.hpp"
 #include "truebearing/tracker/polar_sensor.hpp"
 #include "truebearing/tracker/position_sensor.hpp"
+#include "truebearing/tracker/several_sensors.hpp"
 
 namespace truebearing::filter_tracker_pack_test {
 namespace {
@@ -54,8 +55,11 @@ void expect_same(const StepRecord& a, const StepRecord& b) {
   }
 }
 
+// Positions, ranges and bearings, or now the one and now the other, each by a sensor of its own.
+enum class Seen { as_position, as_polar, as_both };
+
 // The rough day of one target: outages, repeated and late rows, plots that are not its own, a jump to another place.
-std::vector<Measurement> rough_day(std::uint64_t run, bool polar) {
+std::vector<Measurement> rough_day(std::uint64_t run, Seen by) {
   RandomStream random({7, Role::evaluation, run}, StreamId::test);
   std::vector<Measurement> day;
   Eigen::Vector2d place(4000.0 + 50.0 * static_cast<double>(run), 3000.0), velocity(60.0, -40.0);
@@ -70,9 +74,11 @@ std::vector<Measurement> rough_day(std::uint64_t run, bool polar) {
     measurement.time_s = time_s;
     Eigen::Vector2d seen = place;
     if (random.uniform() < 0.05) seen += Eigen::Vector2d(3000.0, 4000.0) * random.normal();
-    measurement.z = polar ? Eigen::Vector2d(seen.norm() + 30.0 * random.normal(),
-                                            std::atan2(seen[0], seen[1]) + 0.005 * random.normal())
-                          : Eigen::Vector2d(seen + 30.0 * Eigen::Vector2d(random.normal(), random.normal()));
+    if (by == Seen::as_both) measurement.source = random.uniform() < 0.3 ? 1 : 0;
+    measurement.z = by == Seen::as_polar || measurement.source == 1
+                        ? Eigen::Vector2d(seen.norm() + 30.0 * random.normal(),
+                                          std::atan2(seen[0], seen[1]) + 0.005 * random.normal())
+                        : Eigen::Vector2d(seen + 30.0 * Eigen::Vector2d(random.normal(), random.normal()));
     if (random.uniform() < 0.08) measurement.z = BoundedVector::Constant(2, kNaN);
     day.push_back(measurement);
     if (random.uniform() < 0.05) day.push_back(measurement);
@@ -87,7 +93,7 @@ std::vector<Measurement> rough_day(std::uint64_t run, bool polar) {
 struct Kind {
   std::string name;
   std::unique_ptr<FilterTracker> (*make)();
-  bool polar;
+  Seen seen;
 };
 
 std::unique_ptr<TrackedState> two_modes() {
@@ -111,13 +117,13 @@ std::unique_ptr<TrackedState> constant_velocity() {
 const Kind kKinds[] = {
     {"Plain",
      [] { return std::make_unique<FilterTracker>(plane_space(), constant_velocity(), positions(), TwoPointStart{}); },
-     false},
+     Seen::as_position},
     {"Gated",
      [] {
        return std::make_unique<FilterTracker>(plane_space(), constant_velocity(), positions(), TwoPointStart{},
                                               FilterTrackerOptions{.gate_nis = 13.8, .lost_after_s = 40.0});
      },
-     false},
+     Seen::as_position},
     {"Prior",
      [] {
        const BoundedMatrix P = Eigen::Vector4d(1e6, 1e6, 1e4, 1e4).asDiagonal().toDenseMatrix();
@@ -125,20 +131,30 @@ const Kind kKinds[] = {
                                               PriorStart{Eigen::Vector4d(4000.0, 3000.0, 0.0, 0.0), P},
                                               FilterTrackerOptions{.gate_nis = 20.0});
      },
-     true},
+     Seen::as_polar},
     {"MultipleModel",
      [] {
        return std::make_unique<FilterTracker>(plane_space(), two_modes(), positions(), TwoPointStart{},
                                               FilterTrackerOptions{.gate_nis = 13.8, .lost_after_s = 40.0});
      },
-     false},
+     Seen::as_position},
     {"LongerThanItsSpace",
      [] {
        return std::make_unique<FilterTracker>(
            plane_space(), state_of<KalmanFilter<6>>(ConstantAcceleration<2, ContinuousWhiteJerk>{{0.5}}), positions(),
            TwoPointStart{}, FilterTrackerOptions{.gate_nis = 13.8});
      },
-     false},
+     Seen::as_position},
+    {"SeveralSensors",
+     [] {
+       std::vector<SeveralSensors::Part> parts;
+       parts.push_back({"positions", positions()});
+       parts.push_back({"radar", ranges_and_bearings()});
+       return std::make_unique<FilterTracker>(plane_space(), two_modes(),
+                                              std::make_unique<SeveralSensors>(std::move(parts)), TwoPointStart{},
+                                              FilterTrackerOptions{.lost_after_s = 40.0, .gate_nis_of = {13.8, 20.0}});
+     },
+     Seen::as_both},
 };
 
 // Counts the steps that went through a pack.
@@ -180,7 +196,7 @@ TEST_P(FilterTrackerPackOf, StepsAreThoseOfEachAlone) {
   for (int i = 0; i < kPackLanes; ++i) {
     together.push_back(kind.make());
     alone.push_back(kind.make());
-    days.push_back(rough_day(static_cast<std::uint64_t>(i), kind.polar));
+    days.push_back(rough_day(static_cast<std::uint64_t>(i), kind.seen));
   }
   if (!together.front()->pack()) GTEST_SKIP() << "no pack on this processor";
   const auto states = std::make_shared<Counting>(pack_of(together.front()->state()));
@@ -239,8 +255,8 @@ TEST(FilterTrackerPack, IsNotOfTrackersThatPublishSomethingElse) {
                    .pack());
 }
 
-// More trackers than lanes, in other places every time, some left out, some stepped alone or handed a state in between, and
-// two packs that take turns: each comes to what it does alone.
+// More trackers than lanes, in other places every time, some left out, some stepped alone or handed a state in between,
+// and two packs that take turns: each comes to what it does alone.
 TEST(FilterTrackerPack, TrackersMayComeAndGo) {
   constexpr std::size_t kTrackers = 11;
   std::vector<std::unique_ptr<FilterTracker>> together, alone;
@@ -248,7 +264,7 @@ TEST(FilterTrackerPack, TrackersMayComeAndGo) {
   for (std::size_t i = 0; i < kTrackers; ++i) {
     together.push_back(kKinds[1].make());
     alone.push_back(kKinds[1].make());
-    days.push_back(rough_day(20 + i, false));
+    days.push_back(rough_day(20 + i, Seen::as_position));
   }
   if (!together.front()->pack()) GTEST_SKIP() << "no pack on this processor";
   const auto first = std::make_shared<Counting>(pack_of(together.front()->state()));
@@ -315,7 +331,7 @@ TEST(FilterTrackerPack, LeavesTargetsThatAreNowhereToTheirTrackers) {
 // A tracker outlives the pack that it was stepped in.
 TEST(FilterTrackerPack, TrackersGoOnWithoutIt) {
   const auto tracker = kKinds[0].make(), other = kKinds[0].make(), alone = kKinds[0].make();
-  const std::vector<Measurement> day = rough_day(1, false);
+  const std::vector<Measurement> day = rough_day(1, Seen::as_position);
   {
     const std::unique_ptr<TrackerPack> pack = tracker->pack();
     if (!pack) GTEST_SKIP() << "no pack on this processor";

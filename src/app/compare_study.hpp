@@ -43,6 +43,8 @@ class StudyComparison {
   void write(Comparison comparison) const;
 
  private:
+  std::string not_scored(const Recording& first) const;
+
   const Study& study_;
   const CorrectionModels& models_;
   const CompareStudyOptions& asked_;

@@ -14,6 +14,7 @@
 #include "app/data_folder.hpp"
 #include "app/output.hpp"
 #include "app/subcommands.hpp"
+#include "truebearing/core/constants.hpp"
 #include "truebearing/core/error.hpp"
 #include "truebearing/core/suggestion.hpp"
 #include "truebearing/evaluation/rare_loss.hpp"
@@ -109,8 +110,10 @@ std::string probability(double value) {
 std::string text_of(const RareArguments& arguments, const NamedScenario& set, const ScoringRule& rule,
                     const RareLoss& loss) {
   const auto [rate, se] = loss.loss_rate;
-  std::string text = fmt::format("{} of {}: lost, its last error in {}, with probability {} +- {:.2g}\n",
-                                 arguments.tracker, set.name, conditions(rule, 1.0), probability(rate), se);
+  std::string text =
+      fmt::format("{} of {}: lost, its last error in {}, ", arguments.tracker, set.name, conditions(rule, 1.0));
+  text += rate > 0.0 ? fmt::format("with probability {} +- {:.2g}\n", probability(rate), se)
+                     : std::string("was not found\n");
   text += fmt::format("{} repetitions of {} levels of {} runs: {} runs", loss.repetitions.size(), loss.levels.size(),
                       arguments.draws, loss.runs);
   if (se > 0.0) text += fmt::format("; plain runs for that error: {:.2g}", rate * (1.0 - rate) / (se * se));
@@ -125,16 +128,17 @@ std::string text_of(const RareArguments& arguments, const NamedScenario& set, co
 
 // What whoever reads the figure should know; mostly nothing.
 std::string warning(const RareLoss& loss) {
-  constexpr double kMostOfAll = 0.4;
   const std::vector<double>& all = loss.repetitions;
+  const double most_of_all = std::max(0.4, 2.0 / static_cast<double>(all.size()));
   const double largest = *std::max_element(all.begin(), all.end());
   const double sum = loss.loss_rate.value * static_cast<double>(all.size());
   const auto none = std::count(all.begin(), all.end(), 0.0);
-  if (none == 0 && largest < kMostOfAll * sum) return {};
+  if (none == 0 && largest <= most_of_all * sum) return {};
+  if (sum == 0.0) return "no repetition found a loss, which does not say that there is none: more --draws\n";
   return fmt::format(
       "{} of the {} repetitions found no loss and one {:.0f} % of all: do not trust the standard error; "
       "more --draws\n",
-      none, all.size(), sum > 0.0 ? 100.0 * largest / sum : 0.0);
+      none, all.size(), 100.0 * largest / sum);
 }
 
 nlohmann::ordered_json json_of(const Study& study, const RareArguments& arguments, const NamedScenario& set,
@@ -145,7 +149,7 @@ nlohmann::ordered_json json_of(const Study& study, const RareArguments& argument
                               {"seed", seed},
                               {"version", TRUEBEARING_VERSION},
                               {"loss_rate", loss.loss_rate.value},
-                              {"loss_rate_se", loss.loss_rate.se},
+                              {"loss_rate_se", loss.loss_rate.value > 0.0 ? loss.loss_rate.se : kNaN},
                               {"draws", arguments.draws},
                               {"runs", loss.runs},
                               {"repetitions", loss.repetitions}};

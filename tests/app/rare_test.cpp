@@ -35,6 +35,17 @@ TEST(Rare, TellsTheLossRateWithItsErrorAndCountsPlainRunsBesideIt) {
       run(folder, "rare small.toml plain --loss position_m=4000 --draws 100 --repetitions 2 --threads 1 --json -").out);
 }
 
+TEST(Rare, OfWhatWasNotFoundItDoesNotSayThatItIsImpossible) {
+  const TemporaryFolder folder;
+  write_study(folder, tuned_study());
+  const Outcome outcome =
+      run(folder, "rare small.toml plain --loss position_m=1e9 --draws 20 --repetitions 2 --json none.json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out,
+              AllOf(HasSubstr("was not found"), HasSubstr("no repetition found a loss"), Not(HasSubstr("+- 0"))));
+  EXPECT_TRUE(nlohmann::json::parse(folder.read("none.json"))["loss_rate_se"].is_null());
+}
+
 TEST(Rare, WhatCannotBeToldIsRefused) {
   const TemporaryFolder folder;
   write_study(folder, tuned_study());

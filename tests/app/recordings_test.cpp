@@ -49,6 +49,34 @@ TEST(ProgramRecordings, CheckRefusesWhatCannotBeUsed) {
   EXPECT_TRUE(is_one_line(outcome.err)) << outcome.err;
 }
 
+// What counts twice would make figures look surer than they are.
+TEST(ProgramRecordings, ALogThatCannotBeMeasuredAfreshIsOneRun) {
+  const TemporaryFolder folder;
+  write_study(folder, tuned_study());
+  std::string bare = "time_s,position_m,truth_position_m,truth_velocity_mps\n";
+  std::string with_sigma = "time_s,position_m,position_sigma_m,truth_position_m,truth_velocity_mps\n";
+  for (int k = 1; k <= 20; ++k) {
+    bare += fmt::format("{},{},{},100\n", k, 100 * k + k % 3, 100 * k);
+    with_sigma += fmt::format("{},{},9,{},100\n", k, 100 * k + k % 3, 100 * k);
+  }
+  folder.write("bare.csv", bare);
+  folder.write("with_sigma.csv", with_sigma);
+  const auto runs = [&](const char* log, const char* note) {
+    const Outcome outcome = run(folder, fmt::format("compare small.toml --truth {} --runs 30 --json out.json", log));
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr(note));
+    return nlohmann::json::parse(folder.read("out.json"))["runs"].get<int>();
+  };
+  EXPECT_EQ(runs("bare.csv", "runs: 1 in place of 30, which would be the same again"), 1);
+  EXPECT_EQ(runs("with_sigma.csv", "30 runs"), 30);
+}
+
+TEST(ProgramRecordings, WhatIsScoredBehindTheLastStepIsSaidToBe) {
+  const TemporaryFolder folder;
+  write_study(folder, replaced(tuned_study(), "[scoring]", "[scoring]\nfrom_step = 9000"));
+  EXPECT_THAT(run(folder, "compare small.toml --runs 3").out, HasSubstr("It is scored from step 9000 on, and"));
+}
+
 TEST(ProgramRecordings, MessagesLeaveTheTerminalAlone) {
   const TemporaryFolder folder;
   folder.write("wild.csv", "\x1b[31mtime\x1b]0;owned\a,position_m\n1,2\n");

@@ -154,6 +154,7 @@ TEST_F(RecordedFileTest, SnapshotLogIsReplayedWithItsTargets) {
   EXPECT_EQ(&file.truth_space(), &angle_space());
   EXPECT_EQ(file.simulate({1, Role::evaluation, 3}).truth.size(), 2u);
   EXPECT_EQ(file.simulate({}).snapshots, file.simulate({1, Role::evaluation, 3}).snapshots);
+  EXPECT_EQ(file.different_runs(Role::evaluation), 1u);
   EXPECT_THAT(file.note(), AllOf(HasSubstr("log.h5: targets: 2; 4 intervals, 1 missing"), HasSubstr("replays")));
 
   recorded.truth_space = nullptr;

@@ -45,7 +45,9 @@ TEST(StepLogScenario, RunsReplayTheLogsOfTheirRoleInTurn) {
       EXPECT_EQ(first_position(*logs, role, run), expected);
     EXPECT_EQ(first_position(*logs, Role::evaluation, run), run % 2 == 0 ? 10.0 : 2.0);
   }
-  EXPECT_THAT(logs->note(), HasSubstr("2 recorded tracks"));
+  EXPECT_EQ(logs->different_runs(Role::training), 3u);
+  EXPECT_EQ(logs->different_runs(Role::evaluation), 2u);
+  EXPECT_THAT(logs->note(), HasSubstr("recorded tracks: 2, a run each"));
 }
 
 TEST(StepLogScenario, ValidationMayHaveLogsOfItsOwn) {

@@ -73,6 +73,12 @@ RecordedScenario RecordedScenario::replayed(Recording recorded) {
   return scenario;
 }
 
+std::optional<std::size_t> RecordedScenario::different_runs(Role) const {
+  for (const Track& track : tracks_)
+    if (!track.sigma.empty()) return std::nullopt;
+  return tracks_.size();
+}
+
 RecordedScenario::RecordedScenario(Recording recorded, std::optional<double> sigma) {
   if (measures_snapshots(recorded.measured)) {
     *this = replayed(std::move(recorded));

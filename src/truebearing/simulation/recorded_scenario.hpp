@@ -6,6 +6,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -48,6 +49,7 @@ class RecordedScenario final : public Scenario {
   Recording simulate(const RunKey& key) const override;
   const StateSpace& truth_space() const override { return *tracks_.front().exact.truth_space; }
   std::optional<Measured> measured() const override { return Measured::of(tracks_.front().exact.measured); }
+  std::optional<std::size_t> different_runs(Role) const override;
 
  private:
   RecordedScenario() = default;

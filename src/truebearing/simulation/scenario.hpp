@@ -3,6 +3,7 @@
 // role, seed, run). A scenario with distributions in it is a family: each run draws from them.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -29,6 +30,9 @@ class Scenario {
   virtual std::optional<Measured> measured() const { return std::nullopt; }
   /// Whether it is a sensor that reports its standard deviations with every measurement.
   virtual bool reports_sigma() const { return false; }
+  /// So many runs of a role differ, as where logs are replayed: run k is run k mod that again. Nothing where each is
+  /// drawn anew.
+  virtual std::optional<std::size_t> different_runs(Role) const { return std::nullopt; }
   /// What whoever reads its results should know of it, as a line; mostly nothing.
   virtual std::string note() const { return {}; }
 

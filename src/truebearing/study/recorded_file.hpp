@@ -9,6 +9,7 @@
 //   max_speed_mps, min_speed_mps, max_gap_periods  what of the track is believed and scored; optional
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <mutex>
@@ -46,6 +47,7 @@ class RecordedFile final : public Scenario {
   const StateSpace& truth_space() const override { return opened().truth_space(); }
   /// What the study's scenario measures: another file is refused as it is read.
   std::optional<Measured> measured() const override { return trained_on_.measured(); }
+  std::optional<std::size_t> different_runs(Role role) const override { return opened().different_runs(role); }
   std::string note() const override;
 
  private:

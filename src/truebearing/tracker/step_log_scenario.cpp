@@ -48,7 +48,7 @@ Recording StepLogScenario::simulate(const RunKey& key) const {
 }
 
 std::string StepLogScenario::note() const {
-  return fmt::format("{} recorded tracks; further runs repeat them", tracks(Role::evaluation).size());
+  return fmt::format("recorded tracks: {}, a run each", tracks(Role::evaluation).size());
 }
 
 std::unique_ptr<Scenario> read_step_log_scenario(TableReader& table) {

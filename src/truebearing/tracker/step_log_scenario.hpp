@@ -7,6 +7,7 @@
 //   tracker                whose rows, of logs that have a column `tracker`
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <mutex>
@@ -34,6 +35,7 @@ class StepLogScenario final : public Scenario {
   Recording simulate(const RunKey& key) const override;
   const StateSpace& truth_space() const override { return *space_; }
   std::optional<Measured> measured() const override { return Measured::step_log(*space_); }
+  std::optional<std::size_t> different_runs(Role role) const override { return tracks(role).size(); }
   std::string note() const override;
 
   /// The tracks of one log, with or without truth; "-" is standard input.

@@ -37,10 +37,10 @@ TEST(ErasedMotion, IsTheModelThatItHolds) {
 }
 
 // A filter under the model and one under the interface do the same, to the bit, whatever the interval before was.
-template <typename Motion>
+template <typename Form, typename Motion>
 void expect_same_prediction(const Motion& model) {
   constexpr int N = Motion::kStates;
-  using Filter = KalmanFilter<N>;
+  using Filter = KalmanFilter<N, Form>;
   typename Filter::State x;
   for (int i = 0; i < N; ++i) x(i) = 0.1 * (i + 1);
   Filter direct(x, some_covariance<N>()), through(x, some_covariance<N>());
@@ -59,8 +59,10 @@ void expect_same_prediction(const Motion& model) {
 }
 
 TEST(ErasedMotion, PredictsAsTheModelDoes) {
-  expect_same_prediction(Turn{{2.0}, 0.1});
-  expect_same_prediction(Turning{{2.0}, 0.01});
+  expect_same_prediction<Joseph>(Turn{{2.0}, 0.1});
+  expect_same_prediction<Joseph>(Turning{{2.0}, 0.01});
+  expect_same_prediction<SquareRoot>(Turn{{2.0}, 0.1});
+  expect_same_prediction<SquareRoot>(Turning{{2.0}, 0.01});
 }
 
 TEST(ErasedMotion, OfNoCovarianceFailsAndLeavesTheEstimate) {

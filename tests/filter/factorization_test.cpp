@@ -122,20 +122,41 @@ TYPED_TEST(SquareMatrices, RootsAreTriangularAndSquareToTheMatrix) {
   }
 }
 
+TYPED_TEST(SquareMatrices, RootsOfSingularOnesSquareToThemAndOfIndefiniteOnesAreNaN) {
+  constexpr int N = TestFixture::kSize;
+  using Matrix = typename TestFixture::Square;
+  for (int k = 0; k < 200; ++k) {
+    const auto a = TestFixture::Column::NullaryExpr([&] { return this->random.normal(); }).eval();
+    const Matrix P = a * a.transpose();
+    const auto L = semidefinite_root<N, double>(P);
+    const auto U = upper_semidefinite_root<N, double>(P);
+    for (int j = 0; j < N; ++j)
+      for (int i = 0; i < N; ++i) {
+        EXPECT_NEAR((L * L.transpose())(i, j), P(i, j), 1e-13 * std::abs(P(i, j)));
+        EXPECT_NEAR((U * U.transpose())(i, j), P(i, j), 1e-13 * std::abs(P(i, j)));
+      }
+    const auto indefinite = this->covariance(-1e-6, 1.0, 8.0);
+    EXPECT_TRUE((semidefinite_root<N, double>(indefinite).diagonal().array().isNaN().all())) << indefinite;
+    EXPECT_TRUE((upper_semidefinite_root<N, double>(indefinite).diagonal().array().isNaN().all())) << indefinite;
+  }
+}
+
 TYPED_TEST(SquareMatrices, TriangularizeKeepsTheProductAndWhatIsTriangular) {
   constexpr int N = TestFixture::kSize;
-  using Wide = Eigen::Matrix<double, N, 2 * N>;
+  using Matrix = typename TestFixture::Square;
   for (int k = 0; k < 200; ++k) {
-    const Wide W = Wide::NullaryExpr([&] { return this->random.uniform() < 0.3 ? 0.0 : this->random.normal(); });
-    Wide array = W;
-    triangularize<N, 2 * N, double>(array);
-    EXPECT_LE((array * array.transpose() - W * W.transpose()).norm(), 1e-14 * W.squaredNorm());
-    for (int j = 0; j < 2 * N; ++j)
-      for (int i = std::max(0, j - N + 1); i < N; ++i) EXPECT_EQ(array(i, j), 0.0);
-    for (int i = 0; i < N; ++i) EXPECT_GE(array(i, N + i), 0.0);
-    const Wide before = array;
-    triangularize<N, 2 * N, double>(array);
-    EXPECT_EQ(array, before);
+    const auto coefficient = [&] { return this->random.uniform() < 0.3 ? 0.0 : this->random.normal(); };
+    const Matrix A = Matrix::NullaryExpr(coefficient), B = Matrix::NullaryExpr(coefficient);
+    Matrix zero = A, U = B;
+    triangularize<N, N, double>(zero, U);
+    EXPECT_LE((U * U.transpose() - A * A.transpose() - B * B.transpose()).norm(),
+              1e-14 * (A.squaredNorm() + B.squaredNorm()));
+    EXPECT_EQ(zero, Matrix::Zero());
+    for (int j = 0; j < N; ++j)
+      for (int i = j + 1; i < N; ++i) EXPECT_EQ(U(i, j), 0.0);
+    const Matrix before = U;
+    triangularize<N, N, double>(zero, U);
+    EXPECT_EQ(U, before);
   }
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "truebearing/filter/product.hpp"
 #include "truebearing/filter/small_matrix.hpp"
 
 namespace truebearing {
@@ -150,69 +151,137 @@ EIGEN_ALWAYS_INLINE bool is_positive_semidefinite(const Eigen::Matrix<Scalar, N,
   }
 }
 
-/// Lower triangular L with L L' = A, up to some n eps of the variances; NaN where A is not positive semi-definite.
+namespace detail {
+
+/// Kept out of a filter's step, as above.
 template <int N, typename Scalar>
-Eigen::Matrix<Scalar, N, N> semidefinite_root(const Eigen::Matrix<Scalar, N, N>& A) {
+[[gnu::noinline, gnu::cold]] bool is_positive_semidefinite_aside(const Eigen::Matrix<Scalar, N, N>& A) {
+  return is_positive_semidefinite<N, Scalar>(A);
+}
+
+/// The root of A by elimination from the first variable to the last, which is lower triangular, or from the last to the
+/// first, upper. No pivot waits for a root: they are drawn beside the elimination.
+template <bool from_last, int N, typename Scalar>
+EIGEN_ALWAYS_INLINE Eigen::Matrix<Scalar, N, N> triangular_root(const Eigen::Matrix<Scalar, N, N>& A) {
+  constexpr int kTerms = N * N * N;
+  constexpr auto at = [](int step) { return from_last ? N - 1 - step : step; };
   const Eigen::Matrix<Scalar, N, 1> slack = semidefinite_slack<N, Scalar>(A);
   Eigen::Matrix<Scalar, N, N> L;
-  for (int j = 0; j < N; ++j)
-    for (int i = 0; i < N; ++i) L(i, j) = i < j ? Scalar(0) : A(i, j);
-  for (int k = 0; k < N; ++k) {
-    const Scalar root = std::sqrt(L(k, k) > slack(k) ? L(k, k) : slack(k));
-    for (int i = k + 1; i < N; ++i) L(i, k) /= root;
-    for (int i = k + 1; i < N; ++i)
-      for (int j = k + 1; j <= i; ++j) L(i, j) -= L(i, k) * L(j, k);
+  each<N, kTerms>([&](int j) __attribute__((always_inline)) {
+    each<N, kTerms>([&](int i)
+                        __attribute__((always_inline)) { L(at(i), at(j)) = i < j ? Scalar(0) : A(at(i), at(j)); });
+  });
+  bool valid = true;
+  each<N, kTerms>([&](int k) __attribute__((always_inline)) {
+    const Scalar pivot = L(at(k), at(k)), least = slack(at(k));
+    valid &= (pivot > -least) & (pivot <= std::numeric_limits<Scalar>::max());
+    const Scalar lifted = pivot > least ? pivot : least, inverse = 1 / lifted, root = std::sqrt(lifted);
+    each<N, kTerms>([&](int i) __attribute__((always_inline)) {
+      if (i <= k || is_known_zero(L(at(i), at(k)))) return;
+      const Scalar factor = L(at(i), at(k)) * inverse;
+      each<N, kTerms>([&](int j) __attribute__((always_inline)) {
+        if (k < j && j <= i && !is_known_zero(L(at(j), at(k)))) L(at(i), at(j)) -= factor * L(at(j), at(k));
+      });
+    });
+    each<N, kTerms>([&](int i) __attribute__((always_inline)) {
+      if (i > k && !is_known_zero(L(at(i), at(k)))) L(at(i), at(k)) = (L(at(i), at(k)) * inverse) * root;
+    });
     // A variance of zero keeps a root of zero: its slack only served the division.
-    L(k, k) = A(k, k) == 0 ? Scalar(0) : root;
+    L(at(k), at(k)) = A(at(k), at(k)) > 0 ? root : Scalar(0);
+  });
+  if (!valid) [[unlikely]] {  // its pivots refuse some that is_positive_semidefinite() takes
+    const Eigen::Matrix<Scalar, N, N> copy = A;
+    const bool refused = !is_positive_semidefinite_aside<N, Scalar>(copy);
+    each<N, kTerms>([&](int j) __attribute__((always_inline)) {
+      each<N, kTerms>([&](int i) __attribute__((always_inline)) {
+        if (refused && !is_known_zero(L(i, j))) L(i, j) = std::numeric_limits<Scalar>::quiet_NaN();
+      });
+    });
   }
-  if (!is_positive_semidefinite<N, Scalar>(A)) fill(L, std::numeric_limits<Scalar>::quiet_NaN());
   return L;
+}
+
+}  // namespace detail
+
+/// Lower triangular L with L L' = A, up to some n eps of the variances. Where A is not positive semi-definite L is NaN,
+/// but for zeros that the compiler knows.
+template <int N, typename Scalar>
+EIGEN_ALWAYS_INLINE Eigen::Matrix<Scalar, N, N> semidefinite_root(const Eigen::Matrix<Scalar, N, N>& A) {
+  return detail::triangular_root<false, N, Scalar>(A);
 }
 
 /// Upper triangular U with U U' = A: the same from the last variable to the first.
 template <int N, typename Scalar>
 EIGEN_ALWAYS_INLINE Eigen::Matrix<Scalar, N, N> upper_semidefinite_root(const Eigen::Matrix<Scalar, N, N>& A) {
-  Eigen::Matrix<Scalar, N, N> R, U;
-  for (int j = 0; j < N; ++j)
-    for (int i = 0; i < N; ++i) R(i, j) = A(N - 1 - i, N - 1 - j);
-  const Eigen::Matrix<Scalar, N, N> L = semidefinite_root<N, Scalar>(R);
-  for (int j = 0; j < N; ++j)
-    for (int i = 0; i < N; ++i) U(i, j) = L(N - 1 - i, N - 1 - j);
-  return U;
+  return detail::triangular_root<true, N, Scalar>(A);
 }
 
-/// W (rows x cols, cols >= rows) becomes W Theta = [0, U] with Theta orthogonal, U upper triangular, diagonal >= 0: row
-/// by row from the last, Givens rotations of the columns. Rotations, because they multiply where a Householder
-/// reflection subtracts: columns of very different size keep their digits (Bierman's example: 1e-15 against 1e-7). The
-/// radii of a row are the roots of its partial sums of squares, so that none waits for another (Carlson 1973).
-template <int Rows, int Cols, typename Scalar>
-EIGEN_ALWAYS_INLINE void triangularize(Eigen::Matrix<Scalar, Rows, Cols>& W) {
-  static_assert(Cols >= Rows);
-#pragma GCC unroll 8
-  for (int row = Rows - 1; row >= 0; --row) {
-    const int pivot = row + Cols - Rows;
-    const Scalar sign = std::copysign(Scalar(1), W(row, pivot));
-#pragma GCC unroll 8
-    for (int i = 0; i < row; ++i) W(i, pivot) *= sign;
-    Scalar radius = sign * W(row, pivot), square = radius * radius;
-#pragma GCC unroll 16
-    for (int j = 0; j < pivot; ++j) {
-      const Scalar w = W(row, j);
-      if (w == 0) continue;  // nothing to rotate: what is triangular already stays as it is, to the bit
-      square += w * w;
-      const Scalar next = std::sqrt(square), inverse = 1 / next;
-      const Scalar cosine = radius * inverse, sine = w * inverse;
-#pragma GCC unroll 8
-      for (int i = 0; i < row; ++i) {
-        const Scalar rotated = cosine * W(i, pivot) + sine * W(i, j);
-        W(i, j) = cosine * W(i, j) - sine * W(i, pivot);
-        W(i, pivot) = rotated;
-      }
-      W(row, j) = 0;
-      radius = next;
-    }
-    W(row, pivot) = radius;
+/// A coefficient, the radius, into which others of its row are rotated (Givens). The radii are the roots of the partial
+/// sums of squares, so that none waits for another (Carlson 1973).
+template <typename Scalar>
+class Rotations {
+ public:
+  EIGEN_ALWAYS_INLINE explicit Rotations(Scalar radius) : radius_(radius), square_(radius * radius) {}
+
+  Scalar radius() const { return radius_; }
+
+  /// Rotates w into the radius: w becomes zero. False where it was: there is nothing to rotate, and what the compiler
+  /// can see to be zero costs nothing.
+  EIGEN_ALWAYS_INLINE bool take(Scalar& w) {
+    if (detail::is_known_zero(w)) return false;
+    const Scalar taken = w, square = w * w;
+    w = 0;
+    if (square <= 0) return false;
+    square_ += square;
+    const Scalar next = std::sqrt(square_), inverse = 1 / next;
+    cosine_ = radius_ * inverse;
+    sine_ = taken * inverse;
+    radius_ = next;
+    return true;
   }
+
+  /// The same for the coefficients of another row, of which `pivot` is in the radius's column and `other` in that of w.
+  EIGEN_ALWAYS_INLINE void turn(Scalar& pivot, Scalar& other) const {
+    if (detail::is_known_zero(other)) {
+      if (detail::is_known_zero(pivot)) return;
+      other = -(sine_ * pivot);
+      pivot = cosine_ * pivot;
+    } else if (detail::is_known_zero(pivot)) {
+      pivot = sine_ * other;
+      other = cosine_ * other;
+    } else {
+      const Scalar turned = cosine_ * pivot + sine_ * other;
+      other = cosine_ * other - sine_ * pivot;
+      pivot = turned;
+    }
+  }
+
+ private:
+  Scalar radius_, square_, cosine_ = 1, sine_ = 0;
+};
+
+/// [A, B] (n x m and n x n) becomes [A, B] Theta = [0, U] with Theta orthogonal, U upper triangular: row by row from the
+/// last, Givens rotations of the columns. Rotations, because they multiply where a Householder reflection subtracts:
+/// columns of very different size keep their digits (Bierman's example: 1e-15 against 1e-7). What is triangular already
+/// stays as it is, to the bit.
+template <int N, int M, typename Scalar>
+EIGEN_ALWAYS_INLINE void triangularize(Eigen::Matrix<Scalar, N, M>& A, Eigen::Matrix<Scalar, N, N>& B) {
+  constexpr int kTerms = N * N * M;
+  detail::each<N, kTerms>([&](int step) __attribute__((always_inline)) {
+    const int row = N - 1 - step;
+    Rotations<Scalar> rotations(B(row, row));
+    const auto take = [&](auto& W, int j) __attribute__((always_inline)) {
+      if (!rotations.take(W(row, j))) return;
+      detail::each<N, kTerms>([&](int i) __attribute__((always_inline)) {
+        if (i < row) rotations.turn(B(i, row), W(i, j));
+      });
+    };
+    detail::each<M, kTerms>([&](int j) __attribute__((always_inline)) { take(A, j); });
+    detail::each<N, kTerms>([&](int j) __attribute__((always_inline)) {
+      if (j < row) take(B, j);
+    });
+    B(row, row) = rotations.radius();
+  });
 }
 
 }  // namespace truebearing

@@ -9,7 +9,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cmath>
 #include <limits>
 
 #include "truebearing/filter/factorization.hpp"
@@ -24,9 +23,7 @@ struct SquareRoot {
   /// NaN where P is not positive semi-definite, so that every later step says `failed`.
   template <int N, typename Scalar>
   static Eigen::Matrix<Scalar, N, N> from_covariance(const Eigen::Matrix<Scalar, N, N>& P) {
-    Eigen::Matrix<Scalar, N, N> U = semidefinite_root<N, Scalar>(P);
-    triangularize<N, N, Scalar>(U);
-    return U;
+    return upper_semidefinite_root<N, Scalar>(P);
   }
 
   template <int N, typename Scalar>
@@ -42,22 +39,20 @@ struct SquareRoot {
   }
 
   template <int N, typename Scalar>
-  static bool predict(const Eigen::Matrix<Scalar, N, N>& F, const Eigen::Matrix<Scalar, N, N>& Q,
-                      Eigen::Matrix<Scalar, N, N>& U) {
-    Eigen::Matrix<Scalar, N, 2 * N> array;
-    put(upper_semidefinite_root<N, Scalar>(Q), array, 0, 0);  // as F U mostly is: less to rotate
-    put(product(F, U), array, 0, N);
-    triangularize<N, 2 * N, Scalar>(array);
-    take(array, 0, N, U);
-    return is_finite(U);
+  EIGEN_ALWAYS_INLINE static bool predict(const Eigen::Matrix<Scalar, N, N>& F, const Eigen::Matrix<Scalar, N, N>& Q,
+                                          Eigen::Matrix<Scalar, N, N>& U) {
+    return carry<N, Scalar>(F, upper_semidefinite_root<N, Scalar>(Q), U);  // upper, as F U mostly is: less to rotate
   }
 
-  /// predict() across a motion whose type is not known here. x becomes f(x); `failed` leaves both as they were.
+  /// predict() across a motion whose type is not known here. x becomes f(x); `failed` leaves both as they were. Where Q
+  /// would stand `made` keeps its root.
   template <int N>
   static StepStatus across(const SizedMotion<N>& motion, double dt_s, Eigen::Matrix<double, N, 1>& x,
-                           Eigen::Matrix<double, N, N>& U, Transition<N>&) {
+                           Eigen::Matrix<double, N, N>& U, Transition<N>& made) {
+    if (made.dt_s != dt_s) make<N>(motion, dt_s, made);
+    const Eigen::Matrix<double, N, N> F = motion.is_linear() ? made.F : motion.F(x, dt_s);
     Eigen::Matrix<double, N, N> new_U = U;
-    const bool valid = predict<N, double>(motion.F(x, dt_s), motion.Q(dt_s), new_U);
+    const bool valid = carry<N, double>(F, made.Q, new_U);
     return commit<double, N>(valid, motion.f(x, dt_s), new_U, x, U);
   }
 
@@ -69,33 +64,46 @@ struct SquareRoot {
                                          const Eigen::Matrix<Scalar, M, M>& R, Update<N, M, Scalar>& update) {
     // A relative error of up to 1/128, in the worst case; what is seen is a tenth of it.
     constexpr Scalar kLeastPivot = 64 * std::numeric_limits<Scalar>::epsilon();
-    const Eigen::Matrix<Scalar, N, 1> variance = diagonal<N, Scalar>(U);
+    constexpr int kTerms = N * N * M;
+    Eigen::Matrix<Scalar, N, N> upper = upper_of<N, Scalar>(U);
+    const Eigen::Matrix<Scalar, N, 1> variance = diagonal<N, Scalar>(upper);
     Eigen::Matrix<Scalar, M, 1> t;
-    for (int i = 0; i < M; ++i) {
+    detail::each<M, N * M>([&](int i) __attribute__((always_inline)) {
       t(i) = R(i, i);
-      for (int j = 0; j < N; ++j) t(i) += H(i, j) * H(i, j) * variance(j);
-    }
+      detail::each<N, N * M>([&](int j) __attribute__((always_inline)) {
+        if (!detail::is_known_zero(H(i, j))) t(i) += H(i, j) * H(i, j) * variance(j);
+      });
+    });
 
-    Eigen::Matrix<Scalar, N + M, N + M> array;
-    put(U, array, 0, 0);
-    fill(update.K, Scalar(0));
-    put(update.K, array, 0, N);
-    put(product(H, U), array, N, 0);
-    put(semidefinite_root<M, Scalar>(R), array, N, N);
-    triangularize<N + M, N + M, Scalar>(array);
-    Eigen::Matrix<Scalar, M, M> root;
-    take(array, 0, 0, U);
-    take(array, 0, N, update.K);
-    take(array, N, N, root);
+    // Of the array only the lower rows have to become zero. Column by column from the first, U stays triangular.
+    Eigen::Matrix<Scalar, M, N> HU = product(H, upper);
+    Eigen::Matrix<Scalar, M, M> root = upper_semidefinite_root<M, Scalar>(R);
+    detail::each<N * M, N * M>([&](int i) __attribute__((always_inline)) { update.K.data()[i] = 0; });
+    detail::each<M, kTerms>([&](int step) __attribute__((always_inline)) {
+      const int row = M - 1 - step;
+      Rotations<Scalar> rotations(root(row, row));
+      detail::each<N, kTerms>([&](int j) __attribute__((always_inline)) {
+        if (!rotations.take(HU(row, j))) return;
+        detail::each<M, kTerms>([&](int i) __attribute__((always_inline)) {
+          if (i < row) rotations.turn(root(i, row), HU(i, j));
+        });
+        detail::each<N, kTerms>([&](int i) __attribute__((always_inline)) {
+          if (i <= j) rotations.turn(update.K(i, row), upper(i, j));
+        });
+      });
+      root(row, row) = rotations.radius();
+    });
+    copy(upper, U);
     update.S = product(root, transposed(root));
 
     // K = (K S^1/2) S^-1/2 and nis = |S^-1/2 nu|^2 by substitution.
     bool valid = true;
     for (int k = 0; k < M; ++k) {
-      valid &= root(k, k) > kLeastPivot * std::sqrt(t(k));
+      valid &= root(k, k) * root(k, k) > kLeastPivot * kLeastPivot * t(k);
       for (int i = 0; i < k; ++i)
         for (int row = 0; row < N; ++row) update.K(row, k) -= update.K(row, i) * root(i, k);
-      for (int row = 0; row < N; ++row) update.K(row, k) /= root(k, k);
+      const Scalar inverse = 1 / root(k, k);
+      for (int row = 0; row < N; ++row) update.K(row, k) *= inverse;
     }
     Eigen::Matrix<Scalar, M, 1> whitened = update.nu;
     for (int k = M - 1; k >= 0; --k) {
@@ -107,6 +115,33 @@ struct SquareRoot {
   }
 
  private:
+  template <int N>
+  [[gnu::noinline]] static void make(const SizedMotion<N>& motion, double dt_s, Transition<N>& made) {
+    made.dt_s = dt_s;
+    if (motion.is_linear()) made.F = motion.F(Eigen::Matrix<double, N, 1>::Zero(), dt_s);
+    made.Q = upper_semidefinite_root<N, double>(motion.Q(dt_s));
+  }
+
+  /// U across F and Q, given the root of Q.
+  template <int N, typename Scalar>
+  EIGEN_ALWAYS_INLINE static bool carry(const Eigen::Matrix<Scalar, N, N>& F, Eigen::Matrix<Scalar, N, N> root_Q,
+                                        Eigen::Matrix<Scalar, N, N>& U) {
+    Eigen::Matrix<Scalar, N, N> FU = product(F, upper_of<N, Scalar>(U));
+    triangularize<N, N, Scalar>(root_Q, FU);
+    copy(FU, U);
+    return is_finite(U);
+  }
+
+  /// U, which is zero below its diagonal: the compiler cannot know unless it is written here.
+  template <int N, typename Scalar>
+  EIGEN_ALWAYS_INLINE static Eigen::Matrix<Scalar, N, N> upper_of(const Eigen::Matrix<Scalar, N, N>& U) {
+    Eigen::Matrix<Scalar, N, N> upper;
+    detail::each<N, N * N>([&](int j) __attribute__((always_inline)) {
+      detail::each<N, N * N>([&](int i) __attribute__((always_inline)) { upper(i, j) = i <= j ? U(i, j) : Scalar(0); });
+    });
+    return upper;
+  }
+
   /// Of P.
   template <int N, typename Scalar>
   static Eigen::Matrix<Scalar, N, 1> diagonal(const Eigen::Matrix<Scalar, N, N>& U) {

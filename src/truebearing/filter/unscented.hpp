@@ -44,7 +44,7 @@ class UnscentedKalmanFilter {
   /// Crosses dt_s seconds. `failed` leaves x and P as they were: a result that is not finite, a P that is not positive
   /// semi-definite. Of a linear motion the points have the mean and covariance that F gives, so F is used.
   template <LinearMotionModel Motion>
-  StepStatus predict(const Motion& motion, Scalar dt_s) {
+  EIGEN_ALWAYS_INLINE StepStatus predict(const Motion& motion, Scalar dt_s) {
     static_assert(Motion::kStates == N && std::is_same_v<typename Motion::Scalar, Scalar>);
     const Covariance F = motion.F(dt_s);
     Covariance P = P_;
@@ -56,18 +56,17 @@ class UnscentedKalmanFilter {
   template <NonlinearMotionModel Motion>
   StepStatus predict(const Motion& motion, Scalar dt_s) {
     static_assert(Motion::kStates == N && std::is_same_v<typename Motion::Scalar, Scalar>);
-    const Points<N> offsets = offsets_of_points();
+    const PointStates X = points(semidefinite_root<N, Scalar>(P_));
     const State centre = motion.f(x_, dt_s);
-    Points<N> d;  // from the centre first, then from the mean
-    fill(d, Scalar(0));
-    const PointStates X = points(offsets);
-    for (int i = 1; i < kPoints; ++i)
+    Points<N> d;  // from the centre
+    for (int i = 0; i < kPoints; ++i)
       put(minus(State(motion.f(X[static_cast<std::size_t>(i)], dt_s)), centre), d, 0, i);
-    const State shift = take_mean<N>(d);
+    const State mean = mean_of<N>(d);
     Covariance P = motion.Q(dt_s);
-    add_squares<N>(d, P);
+    if constexpr (kCentreWeight > 0) add_square<N>(kCentreWeight, mean, P);
+    for (int i = 0; i < kPoints; ++i) add_square<N>(kWeight, minus(column(d, i), mean), P);
     detail::mirror_lower<N, Scalar>(P);
-    return commit(is_positive_semidefinite<N, Scalar>(P), plus(centre, shift), P, x_, P_);
+    return commit(is_positive_semidefinite<N, Scalar>(P), plus(centre, mean), P, x_, P_);
   }
 
   /// The same across a motion whose type is not known here.
@@ -85,12 +84,12 @@ class UnscentedKalmanFilter {
   /// Cov(x, f(x)) across a nonlinear motion (n x n), through the points: what a smoother looks back by.
   template <NonlinearMotionModel Motion>
   Covariance cross_covariance(const Motion& motion, Scalar dt_s) const {
-    const Points<N> offsets = offsets_of_points();
-    const PointStates X = points(offsets);
+    const Covariance L = semidefinite_root<N, Scalar>(P_);
+    const PointStates X = points(L);
     Covariance cross = Covariance::Zero();
-    for (std::size_t i = 1; i <= N; ++i) {
+    for (std::size_t i = 0; i < N; ++i) {
       const State across = motion.f(X[i], dt_s) - motion.f(X[N + i], dt_s);
-      cross += kWeight * offsets.col(static_cast<Eigen::Index>(i)) * across.transpose();
+      cross += kWeight * (std::sqrt(kSpread) * L.col(static_cast<Eigen::Index>(i))) * across.transpose();
     }
     return cross;
   }
@@ -107,19 +106,19 @@ class UnscentedKalmanFilter {
     using Vector = Eigen::Matrix<Scalar, M, 1>;
     Update<N, M, Scalar> update;
 
-    const Points<N> offsets = offsets_of_points();
+    const Covariance L = semidefinite_root<N, Scalar>(P_);
     const Vector z_0 = model.h(x_);
-    Points<M> d;
-    fill(d, Scalar(0));
-    const PointStates X = points(offsets);
-    if constexpr (requires { model.residuals_of(X[1].data(), N, kPoints - 1, z_0, d.data()); })
-      model.residuals_of(X[1].data(), N, kPoints - 1, z_0, d.data() + M);
+    Points<M> d;  // from the centre
+    const PointStates X = points(L);
+    if constexpr (requires { model.residuals_of(X[0].data(), N, kPoints, z_0, d.data()); })
+      model.residuals_of(X[0].data(), N, kPoints, z_0, d.data());
     else
-      for (int i = 1; i < kPoints; ++i)
-        put(Vector(model.residual(Vector(model.h(X[static_cast<std::size_t>(i)])), z_0)), d, 0, i);
-    const Vector shift = take_mean<M>(d);
-    update.nu = model.residual(z, plus(z_0, shift));
-    take_update<M>(offsets, d, model.R(), update);
+      detail::each<kPoints, kPoints * M>([&](int i) __attribute__((always_inline)) {
+        const Vector residual = model.residual(Vector(model.h(X[static_cast<std::size_t>(i)])), z_0);
+        detail::each<M, kPoints * M>([&](int row) __attribute__((always_inline)) { d(row, i) = residual(row); });
+      });
+    update.nu = model.residual(z, plus(z_0, mean_of<M>(d)));
+    take_update<M>(L, d, model.R(), update);
     return update;
   }
 
@@ -127,94 +126,98 @@ class UnscentedKalmanFilter {
   const Covariance& P() const { return P_; }
 
  private:
-  static constexpr int kPoints = 2 * N + 1;
+  static constexpr int kPoints = 2 * N;             // besides the centre
   static constexpr Scalar kSpread = N > 3 ? N : 3;  // n + kappa
   static constexpr Scalar kCentreWeight = 1 - N / kSpread;
   static constexpr Scalar kWeight = 1 / (2 * kSpread);
 
-  /// One column a point: the centre, then those on the one side, then those on the other.
+  /// One column a point: those on the one side, then those on the other.
   template <int Rows>
   using Points = Eigen::Matrix<Scalar, Rows, kPoints>;
   using PointStates = std::array<State, static_cast<std::size_t>(kPoints)>;
 
-  /// X - x: of the points around the estimate.
-  Points<N> offsets_of_points() const {
-    const Covariance L = semidefinite_root<N, Scalar>(P_);
-    const Scalar c = std::sqrt(kSpread);
-    Points<N> offsets;
-    for (int row = 0; row < N; ++row) {
-      offsets(row, 0) = 0;
-      for (int i = 0; i < N; ++i) {
-        offsets(row, 1 + i) = c * L(row, i);
-        offsets(row, 1 + N + i) = -offsets(row, 1 + i);
-      }
-    }
-    return offsets;
-  }
-
   /// X: written at once, long before the first is read.
-  PointStates points(const Points<N>& offsets) const {
+  EIGEN_ALWAYS_INLINE PointStates points(const Covariance& L) const {
+    const Scalar c = std::sqrt(kSpread);
     PointStates X;
-    for (int i = 0; i < kPoints; ++i)
-      for (int row = 0; row < N; ++row) X[static_cast<std::size_t>(i)](row) = x_(row) + offsets(row, i);
+    for (int i = 0; i < N; ++i)
+      for (int row = 0; row < N; ++row) {
+        X[static_cast<std::size_t>(i)](row) = x_(row) + c * L(row, i);
+        X[static_cast<std::size_t>(N + i)](row) = x_(row) - c * L(row, i);
+      }
     return X;
   }
 
-  /// Of d, which are taken from the centre, the mean; they become those from the mean. Summed in pairs from both sides,
-  /// which nearly cancel.
+  /// Of d, which are taken from the centre. Summed in pairs from both sides, which nearly cancel.
   template <int Rows>
-  static Eigen::Matrix<Scalar, Rows, 1> take_mean(Points<Rows>& d) {
+  EIGEN_ALWAYS_INLINE static Eigen::Matrix<Scalar, Rows, 1> mean_of(const Points<Rows>& d) {
     Eigen::Matrix<Scalar, Rows, 1> mean;
-    for (int row = 0; row < Rows; ++row) {
-      Scalar sum = 0;
-      for (int i = 1; i <= N; ++i) sum += d(row, i) + d(row, N + i);
+    detail::each<Rows, kPoints * Rows>([&](int row) __attribute__((always_inline)) {
+      Scalar sum = d(row, 0) + d(row, N);
+      detail::each<N, kPoints * Rows>([&](int i) __attribute__((always_inline)) {
+        if (i > 0) sum += d(row, i) + d(row, N + i);
+      });
       mean(row) = kWeight * sum;
-    }
-    for (int i = 0; i < kPoints; ++i)
-      for (int row = 0; row < Rows; ++row) d(row, i) -= mean(row);
+    });
     return mean;
   }
 
-  /// A + sum w d d' into A, in its lower triangle.
+  /// A + weight a a' into A, in its lower triangle.
   template <int Rows>
-  static void add_squares(const Points<Rows>& d, Eigen::Matrix<Scalar, Rows, Rows>& A) {
-    for (int i = 0; i < kPoints; ++i) {
-      const Scalar weight = i == 0 ? kCentreWeight : kWeight;
-      for (int col = 0; col < Rows; ++col)
-        for (int row = col; row < Rows; ++row) A(row, col) += weight * d(row, i) * d(col, i);
-    }
+  EIGEN_ALWAYS_INLINE static void add_square(Scalar weight, const Eigen::Matrix<Scalar, Rows, 1>& a,
+                                             Eigen::Matrix<Scalar, Rows, Rows>& A) {
+    detail::each<Rows * Rows, Rows * Rows>([&](int index) __attribute__((always_inline)) {
+      const int row = index % Rows, col = index / Rows;
+      if (row >= col) A(row, col) += weight * a(row) * a(col);
+    });
   }
 
-  /// The update, once the points have gone through h: `update` has nu, and gets the rest.
+  /// The update, once the points have gone through h: `update` has nu, and gets the rest. Of each pair of points h is an
+  /// odd and an even part: half the difference of the two d, over c, is a column of what is H L where h is linear; half
+  /// their sum, from the mean, adds to R as a noise would. So S = H L (H L)' + noise, and as much for K and P.
   template <int M>
-  EIGEN_ALWAYS_INLINE void take_update(const Points<N>& offsets, const Points<M>& d,
-                                       const Eigen::Matrix<Scalar, M, M>& R, Update<N, M, Scalar>& update) {
-    copy(R, update.S);
-    add_squares<M>(d, update.S);
+  EIGEN_ALWAYS_INLINE void take_update(const Covariance& L, const Points<M>& d, const Eigen::Matrix<Scalar, M, M>& R,
+                                       Update<N, M, Scalar>& update) {
+    const Eigen::Matrix<Scalar, M, 1> mean = mean_of<M>(d);
+    Eigen::Matrix<Scalar, M, N> HL;
+    Eigen::Matrix<Scalar, M, M> noise;
+    copy(R, noise);
+    if constexpr (kCentreWeight > 0) add_square<M>(kCentreWeight, mean, noise);
+    detail::each<N, kPoints * M>([&](int i) __attribute__((always_inline)) {
+      Eigen::Matrix<Scalar, M, 1> even;
+      detail::each<M, kPoints * M>([&](int row) __attribute__((always_inline)) {
+        HL(row, i) = (d(row, i) - d(row, N + i)) * (1 / (2 * std::sqrt(kSpread)));
+        even(row) = Scalar(0.5) * (d(row, i) + d(row, N + i)) - mean(row);
+      });
+      add_square<M>(2 * kWeight, even, noise);
+    });
+    detail::mirror_lower<M, Scalar>(noise);
+    copy(noise, update.S);
+    add_product_transposed<1, Part::lower>(HL, HL, update.S);
     detail::mirror_lower<M, Scalar>(update.S);
-    Eigen::Matrix<Scalar, N, M> cross;
-    fill(cross, Scalar(0));
-    for (int i = 1; i <= N; ++i)
-      for (int col = 0; col < M; ++col)
-        for (int row = 0; row < N; ++row) cross(row, col) += (kWeight * offsets(row, i)) * (d(col, i) - d(col, N + i));
 
     constexpr Scalar kLeastPivot = std::numeric_limits<Scalar>::epsilon() / Scalar(2 * detail::kTrustedError);
     Eigen::Matrix<Scalar, M, 1> least;
     for (int i = 0; i < M; ++i) least(i) = kLeastPivot * update.S(i, i) + std::numeric_limits<Scalar>::min();
     const Ldlt<M, Scalar> factors(update.S, least);
-    factors.solve_rows(cross, update.K);
+    const Eigen::Matrix<Scalar, N, M> PHt = product(L, transposed(HL));
+    Eigen::Matrix<Scalar, N, M> K;  // in registers, which update.K is not
+    detail::each<N, N * M>([&](int row) __attribute__((always_inline)) {
+      Eigen::Matrix<Scalar, M, 1> k;
+      detail::each<M, N * M>([&](int i) __attribute__((always_inline)) { k(i) = PHt(row, i); });
+      k = factors.solve(k);
+      detail::each<M, N * M>([&](int i) __attribute__((always_inline)) { update.K(row, i) = K(row, i) = k(i); });
+    });
     update.nis = dot(update.nu, factors.solve(update.nu));
 
-    // P - K S K' as the sum of squares that it is, over the points' errors after the update, as Joseph's form does:
-    // sum w (X - x - K d)(X - x - K d)' + K R K'.
-    Covariance P = product(product(update.K, R), transposed(update.K));
-    Points<N> left;
-    for (int i = 0; i < kPoints; ++i) put(minus(column(offsets, i), product(update.K, column(d, i))), left, 0, i);
-    add_squares<N>(left, P);
+    // P - K S K' as the sum of squares that it is, as Joseph's form: (I - K H) L times its transpose, + K noise K'.
+    Covariance P = product(product(K, noise), transposed(K)), left = L;
+    add_product<-1>(K, HL, left);
+    add_product_transposed<1, Part::lower>(left, left, P);
     detail::mirror_lower<N, Scalar>(P);
 
     const bool valid = factors.valid & is_positive_semidefinite<M, Scalar>(R) & is_positive_semidefinite<N, Scalar>(P);
-    update.status = commit(valid, plus(x_, product(update.K, update.nu)), P, x_, P_);
+    update.status = commit(valid, plus(x_, product(K, update.nu)), P, x_, P_);
   }
 
   State x_;

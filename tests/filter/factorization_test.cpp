@@ -61,6 +61,17 @@ TYPED_TEST(SquareMatrices, IndefiniteOnesAreFoundToBeAtAnyScale) {
     }
 }
 
+// Of an even number of them the determinant is positive.
+TYPED_TEST(SquareMatrices, OnesOfNegativeVariancesAreNot) {
+  constexpr int N = TestFixture::kSize;
+  for (int negative = 1; negative < 1 << N; ++negative) {
+    auto P = this->covariance(0.5, 1.0, 2.0);
+    for (int i = 0; i < N; ++i)
+      if (negative >> i & 1) P(i, i) *= -1.0;
+    EXPECT_FALSE((is_positive_semidefinite<N, double>(P))) << P;
+  }
+}
+
 // Two variables that are one, and a third that is said to be correlated with them by more than 1: whatever is eliminated
 // after the two is made of rounding.
 TYPED_TEST(SquareMatrices, RoundingHasNoSayBehindTwoVariablesThatAreOne) {
@@ -101,6 +112,9 @@ TYPED_TEST(SquareMatrices, OnesThatAreNotFiniteAreNot) {
         P(i, j) = P(j, i) = value;
         EXPECT_FALSE((is_positive_semidefinite<N, double>(P))) << P;
       }
+  typename TestFixture::Square infinite = TestFixture::Square::Identity();
+  infinite.diagonal().setConstant(HUGE_VAL);
+  EXPECT_FALSE((is_positive_semidefinite<N, double>(infinite)));
 }
 
 TYPED_TEST(SquareMatrices, RootsAreTriangularAndSquareToTheMatrix) {

@@ -162,6 +162,19 @@ TYPED_TEST(KalmanFilterForms, FailedPredictionLeavesTheStateAlone) {
   EXPECT_EQ(filter.P(), P);
 }
 
+TYPED_TEST(KalmanFilterForms, StateThatLeavesItsRangeFailsInWhicheverComponentItDoes) {
+  const double most = std::numeric_limits<double>::max();
+  const LinearMotion<3> growth{10.0 * Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Identity()};
+  for (const Eigen::Vector3d& x0 :
+       {Eigen::Vector3d(most, 1.0, 1.0), {1.0, -most, 1.0}, {1.0, 1.0, most}, {1.0, most, -most}, {most, most, most}}) {
+    KalmanFilter<3, TypeParam> filter(x0, Eigen::Matrix3d::Identity());
+    EXPECT_EQ(filter.predict(growth, 1.0), StepStatus::failed) << x0;
+    EXPECT_EQ(filter.x(), x0);
+    EXPECT_EQ(filter.predict(LinearMotion<3>{Eigen::Matrix3d::Identity(), growth.noise}, 1.0), StepStatus::ok) << x0;
+    EXPECT_EQ(filter.x(), x0);
+  }
+}
+
 TYPED_TEST(KalmanFilterForms, IndefiniteStartFailsAtEveryStep) {
   Eigen::Matrix2d P0;
   P0 << 1.0, 2.0, 2.0, 1.0;

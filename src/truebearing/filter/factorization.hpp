@@ -97,13 +97,14 @@ inline constexpr Scalar kPlainShare = Scalar(1) / 1024;
 template <int N, typename Scalar>
 EIGEN_ALWAYS_INLINE bool is_plainly_positive_definite(const Eigen::Matrix<Scalar, N, N>& A,
                                                       const Eigen::Matrix<Scalar, N, 1>& least) {
-  constexpr Scalar kMax = std::numeric_limits<Scalar>::max();
   if constexpr (N == 1) {
-    return (A(0, 0) > least(0)) & (A(0, 0) <= kMax);
+    return (A(0, 0) > least(0)) & (A(0, 0) <= std::numeric_limits<Scalar>::max());
   } else {
     const Scalar whole = A(0, 0) * A(1, 1), det = whole - A(1, 0) * A(1, 0);
-    const bool leads =
-        (A(0, 0) > least(0)) & (A(1, 1) > least(1)) & (det > kPlainShare<Scalar> * whole) & (det <= kMax);
+    // The determinant is at most the product, so that its share says of the product that it is finite and above zero:
+    // of two variances that need only be positive it takes the first to say the second.
+    bool leads = (A(0, 0) > least(0)) & (det > kPlainShare<Scalar> * whole);
+    if (!is_known_zero(least(1))) leads &= A(1, 1) > least(1);
     if constexpr (N == 2) {
       return leads;
     } else {

@@ -50,7 +50,9 @@ EIGEN_ALWAYS_INLINE void add_observed(const LeadingIdentity<M, N, Scalar>&, cons
 template <typename Scalar, int N, int M>
 EIGEN_ALWAYS_INLINE Scalar size_of_terms(const Eigen::Matrix<Scalar, M, N>& H, const Eigen::Matrix<Scalar, N, N>& P,
                                          Scalar R_ii, int i) {
-  for (int j = 0; j < N; ++j) R_ii += H(i, j) * H(i, j) * P(j, j);
+  each<N, N>([&](int j) __attribute__((always_inline)) {
+    if (!is_known_zero(H(i, j))) R_ii += H(i, j) * H(i, j) * P(j, j);
+  });
   return R_ii;
 }
 template <typename Scalar, int N, int M>

@@ -104,6 +104,7 @@ struct Joseph : detail::CovarianceForm {
     PHt = detail::observed(P, H);
     add_product<-1>(update.K, R, PHt);
     add_product<-1, Part::lower>(PHt, transposed(update.K), P);
+    if constexpr (N == 2) P(0, 0) = by_itself(P(0, 0));  // the next step waits for P
     detail::mirror_lower<N, Scalar>(P);
     return valid & is_positive_semidefinite<N, Scalar>(P);
   }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <type_traits>
 
 namespace truebearing {
 
@@ -68,6 +69,18 @@ EIGEN_ALWAYS_INLINE Eigen::Matrix<Scalar, Rows, Cols> minus(const Eigen::Matrix<
   for (int j = 0; j < Cols; ++j)
     for (int i = 0; i < Rows; ++i) C(i, j) = A(i, j) - B(i, j);
   return C;
+}
+
+/// `a` as it is, computed by itself: GCC does not put it into one vector with its neighbour. For a column of two numbers
+/// that gains nothing, and costs a shuffle wherever one of them is needed without the other.
+template <typename Scalar>
+EIGEN_ALWAYS_INLINE Scalar by_itself(Scalar a) {
+#ifdef __has_builtin
+#if __has_builtin(__builtin_assoc_barrier)
+  if constexpr (std::is_floating_point_v<Scalar>) return __builtin_assoc_barrier(a);
+#endif
+#endif
+  return a;
 }
 
 template <typename Scalar, int Rows>

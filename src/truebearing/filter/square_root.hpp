@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 #include <limits>
 
+#include "truebearing/core/constants.hpp"
 #include "truebearing/filter/factorization.hpp"
 #include "truebearing/filter/product.hpp"
 #include "truebearing/filter/small_matrix.hpp"
@@ -117,9 +118,10 @@ struct SquareRoot {
  private:
   template <int N>
   [[gnu::noinline]] static void make(const SizedMotion<N>& motion, double dt_s, Transition<N>& made) {
-    made.dt_s = dt_s;
+    made.dt_s = kNaN;
     if (motion.is_linear()) made.F = motion.F(Eigen::Matrix<double, N, 1>::Zero(), dt_s);
     made.Q = upper_semidefinite_root<N, double>(motion.Q(dt_s));
+    made.dt_s = dt_s;
   }
 
   /// U across F and Q, given the root of Q.

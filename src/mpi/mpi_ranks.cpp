@@ -8,6 +8,8 @@
 #include <list>
 #include <mpi.h>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "truebearing/core/error.hpp"
 #include "mpi/mpi_module.hpp"
@@ -18,16 +20,22 @@ namespace {
 constexpr int kNumber = 1, kPart = 2;
 constexpr std::size_t kMostAtOnce = std::size_t{1} << 30;  // MPI counts in int
 
+bool are_through(std::vector<MPI_Request>& requests) {
+  int are_done = 0;
+  MPI_Testall(static_cast<int>(requests.size()), requests.data(), &are_done, MPI_STATUSES_IGNORE);
+  return are_done != 0;
+}
+
 // For all ranks, or for rank 0. What takes long (a training) shall not cost the others' processors meanwhile, as MPI's
-// own waiting does: between looks it sleeps for a fiftieth of the time that it has waited.
-void wait_for(MPI_Request request) {
+// own waiting does: between looks it sleeps for a fiftieth of the time that it has waited. What the others have nearly
+// done is not worth a sleep: one wakes late from it where other work wants the processor.
+void wait_for(std::vector<MPI_Request> requests) {
   using Clock = std::chrono::steady_clock;
-  constexpr Clock::duration kLongestSleep = std::chrono::milliseconds(20);
+  constexpr Clock::duration kAwake = std::chrono::microseconds(300), kLongestSleep = std::chrono::milliseconds(20);
   const Clock::time_point begin = Clock::now();
-  for (int is_done = 0;;) {
-    MPI_Test(&request, &is_done, MPI_STATUS_IGNORE);
-    if (is_done != 0) return;
-    std::this_thread::sleep_for(std::min((Clock::now() - begin) / 50, kLongestSleep));
+  while (!are_through(requests)) {
+    const Clock::duration waited = Clock::now() - begin;
+    if (waited > kAwake) std::this_thread::sleep_for(std::min(waited / 50, kLongestSleep));
   }
 }
 
@@ -47,9 +55,7 @@ struct OnTheWay {
 };
 
 bool is_through(OnTheWay& message) {
-  int is_done = 0;
-  MPI_Testall(static_cast<int>(message.requests.size()), message.requests.data(), &is_done, MPI_STATUSES_IGNORE);
-  return is_done != 0;
+  return are_through(message.requests);
 }
 
 class MpiRanks final : public Ranks {
@@ -94,19 +100,19 @@ class MpiRanks final : public Ranks {
   std::vector<std::string> gather_all(std::string_view bytes) override {
     std::vector<unsigned long> lengths(size());
     const unsigned long own = bytes.size();
-    MPI_Request request;
-    MPI_Iallgather(&own, 1, MPI_UNSIGNED_LONG, lengths.data(), 1, MPI_UNSIGNED_LONG, MPI_COMM_WORLD, &request);
-    wait_for(request);
+    std::vector<MPI_Request> requests(1);
+    MPI_Iallgather(&own, 1, MPI_UNSIGNED_LONG, lengths.data(), 1, MPI_UNSIGNED_LONG, MPI_COMM_WORLD, &requests[0]);
+    wait_for(std::exchange(requests, {}));
     std::vector<std::string> all(size());
     for (int root = 0; root < size_; ++root) {
       std::string& text = all[static_cast<std::size_t>(root)];
       if (root == rank_) text = bytes;
       text.resize(lengths[static_cast<std::size_t>(root)]);
       for_parts(text, [&](char* part, int size_of_part) {
-        MPI_Ibcast(part, size_of_part, MPI_BYTE, root, MPI_COMM_WORLD, &request);
-        wait_for(request);
+        MPI_Ibcast(part, size_of_part, MPI_BYTE, root, MPI_COMM_WORLD, &requests.emplace_back());
       });
     }
+    wait_for(std::move(requests));
     return all;
   }
 

@@ -14,6 +14,7 @@
 #include <memory>
 #include <nlopt.hpp>
 #include <optional>
+#include <toml++/toml.h>
 
 #include "truebearing/core/error.hpp"
 #include "truebearing/evaluation/run_score.hpp"

@@ -5,8 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <memory>
-#include <set>
-#include <span>
 #include <utility>
 
 #include "tests/support/angle_tracks.hpp"
@@ -14,8 +12,7 @@
 #include "tests/support/error_message.hpp"
 #include "tests/support/fakes.hpp"
 #include "tests/support/line_trackers.hpp"
-#include "tests/support/thread_ranks.hpp"
-
+#include "tests/training/taught_radar.hpp"
 #include "truebearing/core/constants.hpp"
 #include "truebearing/correction/correction.hpp"
 
@@ -27,24 +24,8 @@ using testing::FakeScenario;
 using testing::FakeTracker;
 using ::testing::HasSubstr;
 using testing::RadarFilter;
-
-Ensemble ensemble() {
-  Ensemble made;
-  RadarFilter radar;
-  made.add("plain", radar.tracker());
-  radar.variance = {1e6, 5e4};
-  made.add("wide", radar.tracker());
-  return made;
-}
-
-CorrectionSpec spec(std::size_t runs) {
-  CorrectionSpec made;
-  made.design.base = made.design.reference = "plain";
-  made.design.covariance_of = "wide";
-  made.design.features = testing::radar_features();
-  made.training.runs = runs;
-  return made;
-}
+using testing::taught_correction;
+using testing::taught_ensemble;
 
 // The scenario with another truth, or none, beside the same measurements.
 FakeScenario other_truth(const Scenario& scenario, double offset, std::size_t from_step = 0) {
@@ -56,45 +37,9 @@ FakeScenario other_truth(const Scenario& scenario, double offset, std::size_t fr
           }};
 }
 
-// All numbers of a set.
-std::vector<double> numbers(const TeacherSet& set) {
-  std::vector<double> all;
-  for (const Eigen::MatrixXd* matrix :
-       {&set.X, &set.Y, &set.reference, &set.covariance_factors, &set.reference_factors})
-    all.insert(all.end(), matrix->data(), matrix->data() + matrix->size());
-  for (const std::vector<bool>* flags : {&set.begins, &set.taught, &set.used})
-    all.insert(all.end(), flags->begin(), flags->end());
-  return all;
-}
-
-TEST(Teacher, RanksShareTheRunsAndTheFirstHasTheSetOfOneProcess) {
-  const LineScenario scenario = testing::radar_family(12);
-  for (const bool whole_tracks : {false, true}) {
-    TeacherOptions options{.seed = 9, .threads = 1, .progress = {}, .whole_tracks = whole_tracks};
-    const std::vector<double> one = numbers(collect_teacher_set(ensemble(), spec(7), scenario, options));
-    ASSERT_GT(one.size(), 84u);
-    for (const std::size_t count : {2u, 9u}) {
-      const auto sets = testing::at_ranks(count, [&](Ranks& ranks) {
-        TeacherOptions shared = options;
-        shared.ranks = &ranks;
-        std::size_t done = 0;
-        shared.progress = [&](std::size_t runs, std::size_t total) {
-          EXPECT_EQ(total, 7u);
-          done = runs;
-        };
-        const TeacherSet set = collect_teacher_set(ensemble(), spec(7), scenario, shared);
-        EXPECT_EQ(done, ranks.rank() == 0 ? 7u : 0u);
-        return numbers(set);
-      });
-      EXPECT_EQ(sets[0], one);
-      for (std::size_t rank = 1; rank < count; ++rank) EXPECT_TRUE(sets[rank].empty());
-    }
-  }
-}
-
 TEST(Teacher, RowsAreTruthMinusTheBaseStepByStep) {
   const LineScenario scenario = testing::radar_family(12);
-  const TeacherSet set = collect_teacher_set(ensemble(), spec(3), scenario,
+  const TeacherSet set = collect_teacher_set(taught_ensemble(), taught_correction(3), scenario,
                                              {.seed = 9, .role = Role::training, .threads = 1, .progress = {}});
   ASSERT_EQ(set.X.rows(), 36);
   ASSERT_EQ(set.X.cols(), 4);
@@ -128,8 +73,8 @@ TEST(Teacher, RowsAreTruthMinusTheBaseStepByStep) {
 
 TEST(Teacher, FeaturesDoNotDependOnTheTruth) {
   const LineScenario scenario = testing::radar_family(30);
-  const TeacherSet set = collect_teacher_set(ensemble(), spec(5), scenario, {});
-  const TeacherSet other = collect_teacher_set(ensemble(), spec(5), other_truth(scenario, 1e6), {});
+  const TeacherSet set = collect_teacher_set(taught_ensemble(), taught_correction(5), scenario, {});
+  const TeacherSet other = collect_teacher_set(taught_ensemble(), taught_correction(5), other_truth(scenario, 1e6), {});
   EXPECT_EQ(set.X, other.X);
   EXPECT_EQ(set.covariance_factors, other.covariance_factors);
   EXPECT_NE(set.Y, other.Y);
@@ -137,29 +82,32 @@ TEST(Teacher, FeaturesDoNotDependOnTheTruth) {
 
 TEST(Teacher, StepsWithUnknownTruthAreLeftOut) {
   const LineScenario scenario = testing::radar_family(30);
-  const TeacherSet set = collect_teacher_set(ensemble(), spec(4), other_truth(scenario, kNaN, 20), {});
+  const TeacherSet set =
+      collect_teacher_set(taught_ensemble(), taught_correction(4), other_truth(scenario, kNaN, 20), {});
   EXPECT_EQ(set.X.rows(), 4 * 20);
   EXPECT_TRUE(set.Y.allFinite());
-  EXPECT_THAT(error_message([&] { collect_teacher_set(ensemble(), spec(4), other_truth(scenario, kNaN), {}); }),
+  EXPECT_THAT(error_message([&] {
+                collect_teacher_set(taught_ensemble(), taught_correction(4), other_truth(scenario, kNaN), {});
+              }),
               HasSubstr("no step"));
 }
 
 TEST(Teacher, FirstStepTaughtIsAsAskedButAveragesSeeAll) {
   const LineScenario scenario = testing::radar_family(30);
-  CorrectionSpec late = spec(2);
+  CorrectionSpec late = taught_correction(2);
   late.training.from_step = 11;
-  const TeacherSet all = collect_teacher_set(ensemble(), spec(2), scenario, {});
-  const TeacherSet tail = collect_teacher_set(ensemble(), late, scenario, {});
+  const TeacherSet all = collect_teacher_set(taught_ensemble(), taught_correction(2), scenario, {});
+  const TeacherSet tail = collect_teacher_set(taught_ensemble(), late, scenario, {});
   ASSERT_EQ(tail.X.rows(), 2 * 20);
   EXPECT_EQ(tail.X.topRows(20), all.X.middleRows(10, 20));
 }
 
 TEST(Teacher, TeachesTheFirstStepInEverySoManySeconds) {
   const LineScenario scenario = testing::radar_family(30);  // at 1, 2, ... 30 s
-  CorrectionSpec sparse = spec(2);
+  CorrectionSpec sparse = taught_correction(2);
   sparse.training.every_s = 5.0;
-  const TeacherSet all = collect_teacher_set(ensemble(), spec(2), scenario, {});
-  const TeacherSet some = collect_teacher_set(ensemble(), sparse, scenario, {});
+  const TeacherSet all = collect_teacher_set(taught_ensemble(), taught_correction(2), scenario, {});
+  const TeacherSet some = collect_teacher_set(taught_ensemble(), sparse, scenario, {});
   const std::vector<Eigen::Index> taught{0, 4, 9, 14, 19, 24, 29};
   ASSERT_EQ(some.X.rows(), 2 * 7);
   for (Eigen::Index run = 0; run < 2; ++run)
@@ -170,13 +118,13 @@ TEST(Teacher, TeachesTheFirstStepInEverySoManySeconds) {
 // Networks that remember see every row; what is not taught is there, and said not to be.
 TEST(Teacher, WholeTracksHoldTheRowsThatAreNotTaught) {
   const LineScenario scenario = testing::radar_family(30);
-  CorrectionSpec late = spec(2);
+  CorrectionSpec late = taught_correction(2);
   late.training.from_step = 11;
   TeacherOptions options;
   options.whole_tracks = true;
-  const TeacherSet taught = collect_teacher_set(ensemble(), late, scenario, {});
-  const TeacherSet all = collect_teacher_set(ensemble(), spec(2), scenario, {});
-  const TeacherSet whole = collect_teacher_set(ensemble(), late, scenario, options);
+  const TeacherSet taught = collect_teacher_set(taught_ensemble(), late, scenario, {});
+  const TeacherSet all = collect_teacher_set(taught_ensemble(), taught_correction(2), scenario, {});
+  const TeacherSet whole = collect_teacher_set(taught_ensemble(), late, scenario, options);
   ASSERT_EQ(whole.X.rows(), 2 * 30);
   EXPECT_EQ(whole.X, all.X);
   ASSERT_EQ(whole.begins.size(), 60u);
@@ -195,12 +143,13 @@ TEST(Teacher, WholeTracksHoldTheRowsThatAreNotTaught) {
 
 TEST(Teacher, WholeTracksOfWhichNothingIsTaughtAreRefused) {
   const LineScenario scenario = testing::radar_family(5);
-  CorrectionSpec late = spec(4);
+  CorrectionSpec late = taught_correction(4);
   late.training.from_step = 6;
   for (const bool whole_tracks : {false, true}) {
     TeacherOptions options;
     options.whole_tracks = whole_tracks;
-    EXPECT_THAT(error_message([&] { collect_teacher_set(ensemble(), late, scenario, options); }), HasSubstr("no step"));
+    EXPECT_THAT(error_message([&] { collect_teacher_set(taught_ensemble(), late, scenario, options); }),
+                HasSubstr("no step"));
   }
 }
 
@@ -214,94 +163,7 @@ TEST(Teacher, RunsWithoutTargetsTeachNothing) {
   for (const bool whole_tracks : {false, true}) {
     TeacherOptions options;
     options.whole_tracks = whole_tracks;
-    EXPECT_EQ(collect_teacher_set(ensemble(), spec(4), some, options).rows(), 2 * 5);
-  }
-}
-
-// By one thread eight runs at a time, by sixteen one by one.
-TEST(Teacher, RowsAreTheSameForAnyNumberOfThreads) {
-  const LineScenario scenario = testing::radar_family(30);
-  for (const bool whole_tracks : {false, true}) {
-    TeacherOptions options{.threads = 1, .progress = {}, .whole_tracks = whole_tracks};
-    std::size_t done = 0;
-    options.progress = [&](std::size_t runs, std::size_t total) {
-      EXPECT_EQ(total, 20u);
-      EXPECT_GT(runs, done);
-      done = runs;
-    };
-    const std::vector<double> one = numbers(collect_teacher_set(ensemble(), spec(20), scenario, options));
-    EXPECT_EQ(done, 20u);
-    options.progress = {};
-    for (const int threads : {2, 16}) {
-      options.threads = threads;
-      EXPECT_EQ(numbers(collect_teacher_set(ensemble(), spec(20), scenario, options)), one);
-    }
-  }
-}
-
-// Ranks on machines of other sizes cut the runs alike.
-TEST(Teacher, RanksMayHaveOtherNumbersOfThreads) {
-  const LineScenario scenario = testing::radar_family(12);
-  const TeacherOptions options{.seed = 9, .threads = 1, .progress = {}};
-  const std::vector<double> one = numbers(collect_teacher_set(ensemble(), spec(40), scenario, options));
-  const auto sets = testing::at_ranks(2, [&](Ranks& ranks) {
-    TeacherOptions shared = options;
-    shared.ranks = &ranks;
-    shared.threads = ranks.rank() == 0 ? 1 : 8;
-    return numbers(collect_teacher_set(ensemble(), spec(40), scenario, shared));
-  });
-  EXPECT_EQ(sets[0], one);
-}
-
-// A tracker as it is on a processor whose registers are too short for a pack.
-class AloneTracker final : public Tracker {
- public:
-  explicit AloneTracker(std::unique_ptr<Tracker> tracker) : tracker_(std::move(tracker)) {}
-  std::span<const StepRecord> step(const Measurement& measurement) override { return tracker_->step(measurement); }
-  void reset() override { tracker_->reset(); }
-  std::unique_ptr<Tracker> fresh() const override { return std::make_unique<AloneTracker>(tracker_->fresh()); }
-  const StateSpace& space() const override { return tracker_->space(); }
-  RecordBlocks blocks() const override { return tracker_->blocks(); }
-
- private:
-  std::unique_ptr<Tracker> tracker_;
-};
-
-TEST(Teacher, RanksMayHaveProcessorsOfWhichSomeGainNothingTogether) {
-  const LineScenario scenario = testing::radar_family(12);
-  const TeacherOptions options{.seed = 9, .threads = 1, .progress = {}};
-  const Ensemble packed = ensemble();
-  Ensemble alone;
-  for (int member = 0; member < packed.size(); ++member)
-    alone.add(packed.name(member), std::make_unique<AloneTracker>(packed.tracker(member).fresh()));
-  const std::vector<double> one = numbers(collect_teacher_set(packed, spec(40), scenario, options));
-  EXPECT_EQ(numbers(collect_teacher_set(alone, spec(40), scenario, options)), one);
-  for (const std::size_t without : {0u, 1u}) {
-    const auto sets = testing::at_ranks(2, [&](Ranks& ranks) {
-      TeacherOptions shared = options;
-      shared.ranks = &ranks;
-      return numbers(collect_teacher_set(ranks.rank() == without ? alone : packed, spec(40), scenario, shared));
-    });
-    EXPECT_EQ(sets[0], one) << without;
-  }
-}
-
-TEST(Teacher, DrawsItsOwnRoleOnly) {
-  const LineScenario scenario = testing::radar_family(5);
-  const auto keys_of = [&](Role role) {
-    std::set<std::vector<std::uint64_t>> keys;
-    const FakeScenario watched(scenario.truth_space(), [&](const RunKey& key) {
-      keys.insert({static_cast<std::uint64_t>(key.role), key.seed, key.run});
-      return scenario.simulate(key);
-    });
-    collect_teacher_set(ensemble(), spec(10), watched, {.seed = 3, .role = role, .threads = 1, .progress = {}});
-    return keys;
-  };
-  const auto training = keys_of(Role::training), validation = keys_of(Role::validation);
-  EXPECT_EQ(training.size(), 10u);
-  for (const auto& key : training) {
-    EXPECT_EQ(key[0], static_cast<std::uint64_t>(Role::training));
-    EXPECT_FALSE(validation.contains(key));
+    EXPECT_EQ(collect_teacher_set(taught_ensemble(), taught_correction(4), some, options).rows(), 2 * 5);
   }
 }
 
@@ -417,7 +279,7 @@ TEST(Teacher, LeavesOutStepsWithErrorsBeyondTheLimit) {
 
 TEST(Teacher, TruthMayHaveMoreThanTheBase) {
   const LineScenario scenario = testing::radar_family(12);
-  const TeacherSet set = collect_teacher_set(ensemble(), spec(3), scenario, {});
+  const TeacherSet set = collect_teacher_set(taught_ensemble(), taught_correction(3), scenario, {});
   // The truth of a line, in another order and with a bias that the base knows nothing of.
   const StateSpace& space = state_space_of_components({"velocity_mps", "bias_m", "position_m"});
   const FakeScenario with_bias(space, [&](const RunKey& key) {
@@ -426,14 +288,15 @@ TEST(Teacher, TruthMayHaveMoreThanTheBase) {
     for (BoundedVector& x : recording.truth[0].x) x = BoundedVector(Eigen::Vector3d(x[1], 77.0, x[0]));
     return recording;
   });
-  const TeacherSet longer = collect_teacher_set(ensemble(), spec(3), with_bias, {});
+  const TeacherSet longer = collect_teacher_set(taught_ensemble(), taught_correction(3), with_bias, {});
   ASSERT_EQ(longer.Y.cols(), 2);
   EXPECT_EQ(longer.Y, set.Y);
 }
 
 TEST(Teacher, TruthOfAnotherSpaceIsRefused) {
   const FakeScenario plane(plane_space(), [](const RunKey&) { return Recording(); });
-  EXPECT_THAT(error_message([&] { collect_teacher_set(ensemble(), spec(1), plane, {}); }), HasSubstr("plane"));
+  EXPECT_THAT(error_message([&] { collect_teacher_set(taught_ensemble(), taught_correction(1), plane, {}); }),
+              HasSubstr("plane"));
 }
 
 }  // namespace

@@ -178,6 +178,16 @@ TEST(ScoreRecordings, AreThoseOfEachAlone) {
   EXPECT_THAT(scored, ElementsAre(56u, 20u, 0u, 56u, 46u));
 }
 
+TEST(ScoreRecordings, AFewAreBestOneByOne) {
+  Ensemble ensemble;
+  ensemble.add("plain", RadarFilter{}.tracker());
+  const bool gains = ensemble.gains_together();  // by the processor's registers
+  const TrackerSet set(std::move(ensemble));
+  EXPECT_EQ(set.best_together(3), 1u);
+  EXPECT_EQ(set.best_together(4), gains ? 4u : 1u);
+  EXPECT_EQ(set.best_together(20), gains ? 8u : 1u);
+}
+
 TEST(ScoreRecording, NeedsTheTruthOfATarget) {
   Recording recording = testing::radar_family(3).simulate({});
   recording.truth.clear();

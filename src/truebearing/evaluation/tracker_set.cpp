@@ -81,7 +81,8 @@ TrackerSet TrackerSet::fresh() const {
 }
 
 std::size_t TrackerSet::best_together(std::size_t runs) const {
-  return ensemble_.gains_together() ? std::min(runs, std::size_t{kPackLanes}) : 1;
+  constexpr std::size_t kFewest = 4;  // a step of a pack takes as long as two or three trackers, however few are in it
+  return ensemble_.gains_together() && runs >= kFewest ? std::min(runs, std::size_t{kPackLanes}) : 1;
 }
 
 TrackerSetPack::TrackerSetPack(const TrackerSet& trackers, std::size_t copies)

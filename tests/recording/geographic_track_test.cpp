@@ -179,6 +179,39 @@ TEST(GeographicTrack, FirstPositionThatIsWrongDoesNotLockOutTheRest) {
   EXPECT_FALSE(recording.measurements[30].is_missing());
 }
 
+// East of North at 5 s and 200 m/s, as an aircraft does.
+std::string aircraft(int wrong, double east_m, double north_m) {
+  std::string text = "time_s,latitude_deg,longitude_deg\n";
+  for (int k = 0; k < 40; ++k) {
+    const double along_m = 1000.0 * k, off = k == wrong ? 1.0 : 0.0;
+    text += fmt::format("{},{:.7f},{:.7f}\n", 5 * k, kLatitude_deg + (0.8 * along_m + off * north_m) / 111132.0,
+                        7.5 + (0.6 * along_m + off * east_m) / 78847.0);
+  }
+  return text;
+}
+
+TEST(GeographicTrack, WrongPositionIsTheOneThatGoesWhereverItLies) {
+  constexpr double kReach_m = 340.0 * 5.0, kStride_m = 1000.0;
+  int told = 0;
+  for (const int wrong : {0, 1, 20, 38, 39})
+    for (double distance_m = 1000.0; distance_m <= 10'000.0; distance_m += 500.0)
+      for (double direction_deg = 0.0; direction_deg < 360.0; direction_deg += 30.0) {
+        const double east_m = distance_m * std::sin(direction_deg * 0.017453292519943295);
+        const double north_m = distance_m * std::cos(direction_deg * 0.017453292519943295);
+        // A first one from which the next can be reached is no glitch to a limit of speed; a later one that can be reached
+        // from the fix before may stand in place of the next.
+        const bool from_before = std::hypot(0.6 * kStride_m + east_m, 0.8 * kStride_m + north_m) < kReach_m + 50.0;
+        const bool to_after = std::hypot(0.6 * kStride_m - east_m, 0.8 * kStride_m - north_m) < kReach_m + 50.0;
+        if (wrong == 0 ? to_after : from_before) continue;
+        const Recording recording = read(aircraft(wrong, east_m, north_m), {.max_speed_mps = 340.0}).recordings.at(0);
+        EXPECT_EQ(recording.counts.glitches, 1) << wrong << ": " << distance_m << " m, " << direction_deg << " deg";
+        EXPECT_TRUE(recording.measurements[static_cast<std::size_t>(wrong)].is_missing())
+            << wrong << ": " << distance_m << " m, " << direction_deg << " deg";
+        ++told;
+      }
+  EXPECT_GT(told, 900);
+}
+
 TEST(GeographicTrack, StepAfterAGapIsNotScoredAndVelocityDoesNotReachAcross) {
   std::string text = "time_s,latitude_deg,longitude_deg\n";
   for (int k = 0; k <= 30; ++k) text += row(k <= 14 ? k : k + 9, k);  // ten seconds for the step from 14 to 15

@@ -11,6 +11,7 @@
 
 #include "tests/support/error_message.hpp"
 #include "tests/support/real_data.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace truebearing::geographic_track_test {
 namespace {
@@ -324,6 +325,15 @@ TEST(GeographicTrack, LateRowsAreSortedWithinTheWindow) {
   const GeographicTracks tracks = read_geographic_tracks(stream, "track.csv", {}, {.sort_window_s = 2.0});
   EXPECT_EQ(tracks.late, 1u);
   EXPECT_EQ(tracks.recordings.at(0).measurements[5].time_s, 5.0);
+}
+
+TEST(GeographicTrack, WindowThatIsNamedIsWhatTheWholeFileNeeds) {
+  const testing::TemporaryFolder folder;
+  std::string text = "time_s,latitude_deg,longitude_deg\n";
+  for (int k = 30; k >= 0; --k) text += row(k, k);
+  const auto path = folder.write("reversed.csv", text);
+  EXPECT_THAT(error_message([&] { read_geographic_tracks(path, {}); }), HasSubstr("--sort-window 30 "));
+  EXPECT_EQ(read_geographic_tracks(path, {}, {.sort_window_s = 30.0}).late, 30u);
 }
 
 TEST(GeographicTrack, AnglesMayBeRadians) {

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
 #include <GeographicLib/LocalCartesian.hpp>
 #include <GeographicLib/Math.hpp>
 #include <limits>
 #include <optional>
 #include <span>
+#include <system_error>
 #include <unordered_map>
 #include <utility>
 
@@ -127,6 +129,26 @@ std::string read_name(const CsvReader& csv, const FixColumns& columns) {
   return name;
 }
 
+// Of a late fix and those after it, which are read for that where they are a file's.
+double greatest_lateness(CsvReader& csv, FixColumns& columns, const RecordingOptions& options, double time_s,
+                         const GeographicTarget& target, Targets& targets) {
+  double late_s = target.latest_s - time_s;
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(csv.name(), unknown)) return late_s;
+  try {
+    while (csv.next()) {
+      const std::string name = read_name(csv, columns);
+      if (!options.target.empty() && name != options.target) continue;
+      double& latest_s = targets.of(name).latest_s;
+      const double next_s = columns.time.read(csv);
+      latest_s = std::max(latest_s, next_s);
+      late_s = std::max(late_s, latest_s - next_s);
+    }
+  } catch (const InputError&) {  // which is said when it is its turn
+  }
+  return late_s;
+}
+
 std::vector<GeographicTarget> read_targets(CsvReader& csv, const RecordingOptions& options, GeographicTracks& tracks) {
   FixColumns columns = find_columns(csv, options);
   if (!options.target.empty() && !columns.target)
@@ -138,10 +160,13 @@ std::vector<GeographicTarget> read_targets(CsvReader& csv, const RecordingOption
     GeographicTarget& target = targets.of(name);
     if (!options.target.empty() && name != options.target) continue;
     const GeographicFix fix = read_fix(csv, columns, tracks.not_available);
-    if (fix.time_s < target.latest_s - options.sort_window_s)
-      throw csv.error(
-          columns.time.index(), fmt::format("is {}, earlier than {} before it", fix.time_s, target.latest_s),
-          fmt::format("times that do not decrease, or --sort-window {:.6g} or more", target.latest_s - fix.time_s));
+    if (fix.time_s < target.latest_s - options.sort_window_s) {
+      const InputError late =
+          csv.error(columns.time.index(), fmt::format("is {}, earlier than {} before it", fix.time_s, target.latest_s));
+      throw InputError(late.where(), late.found(),
+                       fmt::format("times that do not decrease, or --sort-window {:.9g} or more",
+                                   greatest_lateness(csv, columns, options, fix.time_s, target, targets)));
+    }
     tracks.late += fix.time_s < target.latest_s;
     if (!fix.is_missing())
       tracks.widest_deg = std::max({tracks.widest_deg, std::abs(fix.latitude_deg), std::abs(fix.longitude_deg)});

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <sstream>
 #include <streambuf>
 #include <utility>
@@ -13,6 +14,7 @@
 
 #include "tests/support/error_message.hpp"
 #include "tests/support/real_data.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "truebearing/core/angle.hpp"
 
 namespace truebearing::recording_csv_test {
@@ -480,6 +482,40 @@ TEST(RecordingCsv, WhatCannotBeIsMissingAndCounted) {
   EXPECT_EQ(findings_of("time_s,bearing_deg\n0,50\n1,1e12\n", 1).impossible, 1u);
   EXPECT_EQ(findings_of("time_s,bearing_deg\n0,350\n1,511\n2,351\n", 1).not_available, 1u);
   EXPECT_EQ(findings_of("time_s,bearing_deg\n0,510\n1,511\n2,512\n", 0).not_available, 0u) << "turns go on";
+  EXPECT_EQ(findings_of("time_s,bearing_deg\n0,350\n1,-999\n2,999\n3,-9999\n4,351\n", 3).not_available, 3u);
+  EXPECT_EQ(findings_of("time_s,range_m,bearing_deg\n0,5,1\n1,0,1\n", 1).impossible, 1u);
+}
+
+TEST(RecordingCsv, PlotAtZeroZeroOfATargetThatIsNotNearIsMissing) {
+  const auto at_zero = [](const std::string& rows) {
+    std::istringstream stream("time_s,east_m,north_m\n" + rows);
+    LogFindings findings;
+    const Recording recording = read_recording(stream, "log.csv", {}, &findings);
+    EXPECT_EQ(static_cast<std::size_t>(recording.counts.missing), findings.at_zero) << rows;
+    return findings.at_zero;
+  };
+  EXPECT_EQ(at_zero("0,20000,100\n1,20100,100\n2,0,0\n3,0.0,-0.0\n4,20400,100\n"), 2u);
+  EXPECT_EQ(at_zero("0,-200,0\n1,-100,0\n2,0,0\n3,100,0\n"), 0u) << "it passed there";
+  EXPECT_EQ(at_zero("0,-4000,0\n1,-2000,0\n2,0,0\n3,2000,0\n"), 0u) << "fast";
+  EXPECT_EQ(at_zero("0,0,0\n1,20000,0\n2,20100,0\n"), 0u) << "a log may be counted from its first row";
+}
+
+TEST(RecordingCsv, RowsBeyondWhereTrackersFollowAreCounted) {
+  std::istringstream stream("time_s,east_m,north_km\n0,15501189,4205\n1,15501266,4205\n2,9e6,4205\n3,3,12000\n");
+  LogFindings findings;
+  EXPECT_EQ(read_recording(stream, "log.csv", {}, &findings).counts.missing, 0);
+  EXPECT_EQ(findings.too_far, 3u);
+  EXPECT_THAT(findings.note(), HasSubstr("3 rows farther than 1e+07 m from the origin"));
+}
+
+TEST(RecordingCsv, WindowThatIsNamedIsWhatTheWholeFileNeeds) {
+  const testing::TemporaryFolder folder;
+  std::string text = "time_s,position_m\n";
+  for (int k = 120; k > 0; --k) text += fmt::format("{},{}\n", k, 1000 + k);
+  const auto path = folder.write("reversed.csv", text);
+  EXPECT_THAT(testing::error_message([&] { read_recording(path); }),
+              AllOf(HasSubstr("reversed.csv:3: time_s"), HasSubstr("--sort-window 119 "), HasSubstr("--late 119 ")));
+  EXPECT_EQ(read_recording(path, {.sort_window_s = 119.0}).measurements.front().time_s, 1.0);
 }
 
 TEST(RecordingCsv, AllRowsAtOneTimeAreNoLog) {

@@ -8,9 +8,9 @@
 // study knows each row is one's: a column `sensor` names it, or the cells that are filled tell. Other columns are left out
 // (log_columns.hpp).
 //
-// A cell without a finite number makes the measurement missing, and so does what cannot be: a range below 0, a frequency
-// that is not above 0, a bearing of 511 degrees in a log that has no others beyond 360, by which AIS says that there is
-// none. A row that says the same as the one before is dropped. All are counted. A truth that gives positions only is
+// A cell without a finite number makes the measurement missing, and so does what cannot be: a range or a frequency
+// that is not above 0, a bearing of 511 degrees, by which AIS says that there is none, or of 999 or 9999 of either sign
+// in a log that has no others beyond 360, a position at 0, 0 after others far from there. A row that says the same as the one before is dropped. All are counted. A truth that gives positions only is
 // completed by velocity_truth().
 #pragma once
 
@@ -23,6 +23,7 @@
 #include <string>
 #include <vector>
 
+#include "truebearing/core/constants.hpp"
 #include "truebearing/io/csv.hpp"
 #include "truebearing/recording/log_columns.hpp"
 #include "truebearing/recording/recording.hpp"
@@ -37,6 +38,8 @@ struct LogFindings {
   std::size_t late = 0;               ///< rows put in order
   std::size_t impossible = 0;         ///< measurements that cannot be
   std::size_t not_available = 0;      ///< measurements that say that there is none
+  std::size_t at_zero = 0;            ///< plots at 0, 0 of a target that is not near
+  std::size_t too_far = 0;            ///< rows that measure what lies farther than kFarthest_m
   std::size_t of_others = 0;          ///< rows of other targets
 
   /// For the user, in one line without the file's name; empty where nothing was found.
@@ -91,7 +94,9 @@ class MeasurementLog {
   bool is_of_target();
   void check_lateness(double time_s);
   Measurement read_measurement(const std::vector<double>& cells, double time_s);
+  double greatest_lateness(double time_s);
   void remove_impossible(Measurement& measurement);
+  void look_at_place(Measurement& measurement);
   void find_sources();
   std::size_t source_of_row(const Measurement& measurement) const;
   void keep_own(Measurement& measurement) const;
@@ -114,7 +119,9 @@ class MeasurementLog {
   std::uint64_t given_ = 0;
   bool times_differ_ = false;
   bool is_unwrapped_ = false;  // the last bearing was beyond 360 degrees
-  std::string target_;         // whose rows are read, once it is known
+  Eigen::Vector2d last_place_m_{kNaN, kNaN};
+  double last_stride_m_ = kNaN;  // to it, from the place before
+  std::string target_;           // whose rows are read, once it is known
   LogFindings findings_;
 };
 

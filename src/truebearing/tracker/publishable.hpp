@@ -2,12 +2,10 @@
 // What a tracker may publish as an estimate: anything else is `failed`, whatever a hostile log made of its arithmetic.
 #pragma once
 
+#include "truebearing/core/farthest.hpp"
 #include "truebearing/tracker/step_record.hpp"
 
 namespace truebearing {
-
-/// No target is farther away than this.
-inline constexpr double kFarthest_m = 1e7;
 
 /// Gives a record its status: `failed` where x or P is not finite or a variance is below zero.
 inline void set_status(StepStatus status, StepRecord& record) {

@@ -92,6 +92,24 @@ TEST(LogCheck, MisspeltColumnIsAFaultWithTheNearestName) {
   EXPECT_EQ(report.columns.size(), 3u);
 }
 
+TEST(LogCheck, AbbreviatedPositionIsAFaultWithItsName) {
+  const LogReport report = check("time_s,lat_deg,lon_deg\n0,45,7\n1,45.1,7\n");
+  EXPECT_THAT(report.faults, Contains(HasSubstr("did you mean \"latitude_deg\"")));
+  EXPECT_THAT(report.faults, Contains(HasSubstr("did you mean \"longitude_deg\"")));
+  EXPECT_TRUE(check("time_s,east_m,north_m,lat_deg,lon_deg\n0,45,7,1,2\n1,45.1,7,1,2\n").is_usable())
+      << "beside what is measured";
+}
+
+TEST(LogCheck, LogWithoutAMeasurementCannotBeUsed) {
+  EXPECT_THAT(check("time_s,east_m,north_m\n0,,\n1,,\n").faults, Contains(HasSubstr("no usable measurement")));
+  EXPECT_TRUE(check("time_s,east_m,north_m\n0,,\n1,5,7\n").is_usable());
+}
+
+TEST(LogCheck, PositionsBeyondWhereTrackersFollowAreOdd) {
+  const LogReport report = check("time_s,east_m,north_m\n0,15501189,4205185\n1,15501266,4205219\n");
+  EXPECT_THAT(report.oddities, Contains(HasSubstr("2 rows farther than 1e+07 m from the origin")));
+}
+
 TEST(LogCheck, AllFaultsAreSaid) {
   const LogReport report = check("time_s,position_m,position_sigma_m\n0,a,1\n1,2,b\n2,3,-1\n");
   EXPECT_THAT(report.faults, Contains(HasSubstr("log.csv:2: position_m")));

@@ -225,8 +225,11 @@ void read_as_trackers_do(CsvReader csv, const RecordingOptions& options, LogRepo
     return;
   }
   MeasurementLog log(std::move(csv), options);
-  while (log.next()) {
-  }
+  std::size_t rows = 0;
+  while (log.next()) ++rows;
+  if (static_cast<std::size_t>(log.counts().missing) == rows)
+    throw InputError(report.log, fmt::format("has no usable measurement in its {} row{}", rows, rows == 1 ? "" : "s"),
+                     "at least one");
   LogFindings findings = log.findings();
   findings.left_out.clear();
   if (const std::string note = findings.note(); !note.empty()) report.oddities.push_back(note);

@@ -296,7 +296,10 @@ class LayoutReader {
       const bool own_name = column.role == ColumnRole::measured && !find_known(apart(header)) &&
                             !contains(options_.measured, column.quantity);
       if ((column.role != ColumnRole::left_out && !own_name) || is_unwanted(header, options_)) continue;
-      if (const std::string meant = meant_name(csv_, column.index, known); !meant.empty()) {
+      std::vector<std::string> meant_here = known;
+      if (own_name)
+        meant_here.insert(meant_here.end(), {"latitude_deg", "longitude_deg"});  // "lat_deg" of nothing else
+      if (const std::string meant = meant_name(csv_, column.index, meant_here); !meant.empty()) {
         fault(
             column.index, "is no known column",
             fmt::format("did you mean \"{}\"? --columns {}={}, or {}= to leave it out", meant, header, meant, header));

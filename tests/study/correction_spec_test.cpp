@@ -30,5 +30,18 @@ TEST(CorrectionSpec, StepsLeftOutOfTrainingAreOfAQuantityOfTheTruth) {
   EXPECT_THAT(error_message([&] { loaded("position_m = -3.0"); }), HasSubstr("leave_out_beyond.position_m"));
 }
 
+TEST(CorrectionSpec, RefereeOfABaseThatMeasuresNoPositionIsRefused) {
+  const testing::TemporaryFolder folder;
+  const std::string with_referee = testing::replaced(testing::kStudy, "kappa = 3.0\n", "kappa = 3.0\nreferee = true\n");
+  const auto path = testing::write_study(folder, with_referee);
+  EXPECT_NO_THROW(Study::load(path));
+  folder.write("scenario.toml", testing::kScenario + "velocity_sigma_mps = 10.0\n");
+  folder.write("small.toml", testing::replaced(with_referee, "\"position\", variance_m2 = 1e7",
+                                               "\"position_velocity\", sigma_m = 3162.0, velocity_sigma_mps = 10.0"));
+  const std::string error = error_message([&] { Study::load(path); });
+  EXPECT_THAT(error, HasSubstr("small.toml: trackers.nfnn.referee"));
+  EXPECT_THAT(error, HasSubstr("\"plain\""));
+}
+
 }  // namespace
 }  // namespace truebearing::correction_spec_test

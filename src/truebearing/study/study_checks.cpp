@@ -51,6 +51,11 @@ void Study::check_trackers() {
       TableReader reader = tracker_reader(member, member.configuration, path_.string());
       return truebearing::make_tracker(member.kind, reader, scenario_.get());
     };
+    // A referee holds foretold positions against measured ones.
+    if (spec.correction->bounds.referee && !made("")->blocks().measures_position)
+      throw InputError(path_.string() + ": trackers." + spec.name + ".referee",
+                       "wants measured positions, and the base \"" + spec.correction->design.base + "\" has others",
+                       "a base that measures positions alone, or no referee");
     try {
       FeatureExtractor(spec.correction->design.features, made("")->space(), spec.correction->design.frame,
                        [&](const std::string& name) { return made(name)->blocks(); });

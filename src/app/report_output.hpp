@@ -20,6 +20,9 @@ struct ReportArguments {
 
 void add_report_arguments(const Subcommand& command, ReportArguments& arguments);
 
+/// Refuses a folder for plots that is a file, or is to be one of the outputs. Throws InputError.
+void check_folder(const ReportArguments& arguments, std::vector<std::string> outputs);
+
 /// Writes plots into a folder, which is made where it is not there. Throws InputError.
 void write_plots(const std::string& folder, const std::vector<PlotFile>& plots);
 

@@ -251,6 +251,7 @@ void track(const TrackArguments& options) {
   std::vector<std::filesystem::path> inputs = study.input_files();
   inputs.emplace_back(options.log);
   check_outputs(options.outputs(), inputs);
+  check_folder(options.report, {options.output, options.json, options.events});
   if (const auto* logs = dynamic_cast<const StepLogScenario*>(&study.scenario()))
     return track_step_log(study, *logs, options);
   if (is_snapshot_log(options.log)) return track_snapshots(study, options);

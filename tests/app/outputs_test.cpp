@@ -104,6 +104,22 @@ TEST(Outputs, FullOrClosedStreamsAreNoAbort) {
   EXPECT_THAT(folder.read("steps.csv"), ::testing::StartsWith("time_s,tracker"));
 }
 
+TEST(Outputs, PageIsNotTheFolderOfThePlots) {
+  const TemporaryFolder folder;
+  write_study(folder, plain_study());
+  folder.write("log.csv", "time_s,position_m,truth_position_m\n1,100,100\n2,110,110\n");
+  const int files = folder.files();
+  for (const char* arguments :
+       {"track small.toml log.csv --report a.html --svg a.html", "track small.toml log.csv -o a.html --svg ./a.html",
+        "track small.toml log.csv --svg log.csv"}) {
+    const Outcome outcome = run(folder, arguments);
+    EXPECT_EQ(outcome.status, 1) << arguments;
+    EXPECT_THAT(outcome.err, ::testing::HasSubstr("folder for the plots")) << arguments;
+    EXPECT_TRUE(outcome.out.empty()) << "before the work: " << outcome.out;
+  }
+  EXPECT_EQ(folder.files(), files);
+}
+
 TEST(Outputs, ForgottenAndImpossibleValuesAreWrongUsage) {
   const TemporaryFolder folder;
   write_study(folder, plain_study());

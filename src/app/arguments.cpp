@@ -2,10 +2,13 @@
 #include "app/arguments.hpp"
 
 #include <CLI/CLI.hpp>
-#include <cstdint>
+#include <charconv>
+#include <cmath>
 #include <concepts>
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 
 namespace truebearing {
@@ -18,22 +21,40 @@ std::string name_error(const std::string& value) {
 }
 
 std::string count_error(const std::string& value) {
-  return !value.empty() && value.front() == '-' ? value + " is negative" : "";
+  if (!value.empty() && value.front() == '-') return value + " is negative";
+  const char* const end = value.data() + value.size();
+  std::uint64_t count = 0;
+  const auto [stop, error] = std::from_chars(value.data(), end, count);
+  return stop == end && error == std::errc::result_out_of_range ? value + " is above 18446744073709551615" : "";
 }
 
-// Text names something; of numbers without a sign the library takes -1 for the largest.
+std::string nan_error(const std::string& value) {
+  double number = 0.0;
+  return CLI::detail::lexical_cast(value, number) && std::isnan(number) ? value + " is no number" : "";
+}
+
+// Text names something; of numbers without a sign the library takes -1 for the largest,
+// and what is larger too.
 template <typename Value>
 void check_value(CLI::Option* option) {
   if constexpr (std::same_as<Value, std::string> || std::same_as<Value, std::vector<std::string>>)
     option->check(CLI::Validator(name_error, ""));
   if constexpr (std::same_as<Value, std::uint64_t> || std::same_as<Value, std::optional<std::uint64_t>>)
     option->check(CLI::Validator(count_error, ""));
+  if constexpr (std::same_as<Value, double> || std::same_as<Value, std::vector<double>>)
+    option->check(CLI::Validator(nan_error, ""));
 }
 
 // As the library's own, which prints the greatest number there is in full.
 std::string sign_error(const std::string& value) {
   double number = 0.0;
   return CLI::detail::lexical_cast(value, number) && number > 0.0 ? "" : value + " is no number > 0";
+}
+
+std::string negative_error(const std::string& value) {
+  double number = 0.0;
+  const bool fits = CLI::detail::lexical_cast(value, number) && number >= 0.0 && std::isfinite(number);
+  return fits ? "" : value + " is no finite number >= 0";
 }
 
 }  // namespace
@@ -59,7 +80,7 @@ Argument Argument::positive() const {
 }
 
 Argument Argument::non_negative() const {
-  option_->check(CLI::NonNegativeNumber);
+  option_->check(CLI::Validator(negative_error, "NONNEGATIVE"));
   return *this;
 }
 

@@ -49,10 +49,15 @@ std::string unknown_subcommand(const CLI::App& app, int argc, const char* const*
 
 // Help, the version, or what is wrong with the usage.
 int finish(CLI::App& app, const CLI::ParseError& error) {
-  const bool wrong = app.exit(error) != 0;
+  constexpr std::size_t kMostShown = 220;
+  if (error.get_exit_code() != 0) {
+    fail(shortened(printable(error.what()), kMostShown) + "; --help says what is valid");
+    return 2;
+  }
+  app.exit(error);
   if (!std::cout.flush() || std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
     return fail("standard output: cannot be written");
-  return wrong ? 2 : 0;
+  return 0;
 }
 
 }  // namespace
@@ -98,7 +103,8 @@ int command_line(int argc, const char* const* argv) {
   } catch (const InputError& error) {
     return fail(error.what());
   } catch (const std::system_error& error) {  // of a full disk behind standard output, say
-    return fail(error.what());
+    const std::string what = error.what();
+    return fail(what.starts_with("cannot write to file") ? "standard output: " + what : what);
   } catch (const std::bad_alloc&) {
     return fail("there is not enough memory for this");
   } catch (const std::exception& error) {

@@ -26,7 +26,8 @@ TEST(Program, WrongUsageIsStatus2) {
                             "simulate scenario.toml", "track small.toml", "rules a b", "--nonsense"}) {
     const Outcome outcome = run(folder, wrong);
     EXPECT_EQ(outcome.status, 2) << wrong;
-    EXPECT_FALSE(outcome.err.empty()) << wrong;
+    EXPECT_THAT(outcome.err, ::testing::StartsWith("truebearing: ")) << wrong;
+    EXPECT_TRUE(is_one_line(outcome.err)) << wrong << "\n" << outcome.err;
     EXPECT_TRUE(outcome.out.empty()) << wrong;
   }
 }

@@ -129,10 +129,14 @@ TEST(Outputs, ForgottenAndImpossibleValuesAreWrongUsage) {
        {"compare small.toml --runs 2 --json --quiet", "track small.toml log.csv -o ''",
         "track small.toml log.csv -o --json -", "compare small.toml --seed -1", "tune small.toml --seed -1",
         "simulate scenario.toml -o logs --seed -1", "simulate scenario.toml -o ''", "check ''", "tma log.csv --sigma 0",
-        "tma log.csv --sigma -1"}) {
+        "tma log.csv --sigma -1", "track small.toml log.csv --sort-window -1", "track small.toml log.csv --late inf",
+        "track small.toml log.csv --sort-window nan", "tma log.csv --from nan",
+        "compare small.toml --seed 18446744073709551616"}) {
     const Outcome outcome = run(folder, arguments);
     EXPECT_EQ(outcome.status, 2) << arguments << outcome.err;
     EXPECT_LT(outcome.err.size(), 300u) << outcome.err;
+    EXPECT_TRUE(testing::is_one_line(outcome.err)) << outcome.err;
+    EXPECT_THAT(outcome.err, ::testing::StartsWith("truebearing: "));
   }
   EXPECT_EQ(folder.files(), files);
   EXPECT_EQ(run(folder, "compare small.toml --runs 2 --seed 18446744073709551615").status, 0);

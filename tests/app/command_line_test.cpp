@@ -56,6 +56,10 @@ TEST(Program, BadInputIsStatus1AndOneLineThatNamesWhereAndWhat) {
   write_study(folder);
   folder.write("misspelt.toml", replaced(kStudy, "runs = 20\nseed", "rnus = 20\nseed"));
   folder.write("broken.toml", "name = = 1\n");
+  folder.write("units.toml", replaced(kStudy, "variance_m2 = 1e7", "sigma_mm = 50.0"));
+  folder.write("bell.toml", replaced(kStudy, "\"small\"", "\"sma\\u0007ll\""));
+  folder.write("nameless.toml", replaced(kStudy, "\"small\"", "\"\""));
+  folder.write("strange.toml", kStudy + "[trackers.\"pl\\nain\"]\nlike = \"plain\"\n");
   folder.write("text.csv", "time_s,position_m\n1,100\n2,ten\n");
   folder.write("back.csv", "time_s,position_m\n1,100\n3,200\n2,150\n");
   folder.write("bearings.csv", "time_s,bearing_deg\n1,100\n");
@@ -68,6 +72,11 @@ TEST(Program, BadInputIsStatus1AndOneLineThatNamesWhereAndWhat) {
       {"check misspelt.toml", "misspelt.toml:4: rnus"},
       {"check misspelt.toml", "did you mean \"runs\""},
       {"check broken.toml", "broken.toml:1"},
+      {"check units.toml", "units.toml"},
+      {"check units.toml", "sigma_mm"},
+      {"check bell.toml", "is no name: \"sma\\x07ll\""},
+      {"check nameless.toml", "nameless.toml:1: name: is no name"},
+      {"check strange.toml", "is no name: \"pl\\nain\""},
       {"compare small.toml", "truebearing train small.toml"},
       {"track plain.toml text.csv", "text.csv:3"},
       {"track plain.toml text.csv", "position_m"},

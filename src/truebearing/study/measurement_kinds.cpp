@@ -42,7 +42,13 @@ double read_factor(const Reading& reading) {
 }
 
 double read_position_sigma(TableReader& table) {
-  if (table.has("sigma_m") == table.has("variance_m2"))
+  const bool has_sigma = table.has("sigma_m"), has_variance = table.has("variance_m2");
+  if (!has_sigma && !has_variance) {  // it may be misspelt
+    for (const char* later : {"model", "sigma_factor", "reported", "bias", "gate_probability", "clock_offset_s"})
+      table.node(later);
+    table.finish();
+  }
+  if (has_sigma == has_variance)
     throw table.error("", "has neither or both of sigma_m and variance_m2", "one of the two");
   return table.has("sigma_m") ? table.number("sigma_m", kPositive) : std::sqrt(table.number("variance_m2", kPositive));
 }

@@ -51,6 +51,7 @@ void Study::read(const StudyFile& file) {
   for (const char* elsewhere : {"like", "trackers"}) reader.node(elsewhere);
   static_cast<void>(reader.table_if_present("sensors"));  // which trackers read
   name_ = reader.text("name");
+  check_name(reader, "name", name_);
   const toml::node* scenario = reader.node("scenario");
   const bool is_inside = scenario && scenario->is_table();
   scenario_file_ = is_inside ? path_.string() : reader.resolve(reader.text("scenario")).string();
@@ -61,6 +62,7 @@ void Study::read(const StudyFile& file) {
   if (auto log = reader.table_if_present("log")) log_ = read_log_table(std::move(*log));
   if (auto sets = reader.table_if_present("sets"))
     for (const std::string& set : sets->keys()) {
+      check_name(*sets, set, set);
       const ChangedScenario changed = read_changed_scenario(*sets, set);
       sets_.emplace_back(set, this->scenario(changed));
       if (changed.is_recorded()) continue;  // read when it is needed

@@ -6,6 +6,7 @@
 #include <set>
 #include <toml++/toml.h>
 
+#include "truebearing/core/printable.hpp"
 #include "truebearing/core/suggestion.hpp"
 #include "truebearing/study/configuration_text.hpp"
 #include "truebearing/study/parameters_file.hpp"
@@ -133,6 +134,7 @@ std::vector<TrackerSpec> read_tracker_specs(const StudyFile& file, const std::st
   TableReader trackers = TableReader(file.table, name).table("trackers");
   ResolvedTables resolved(trackers);
   std::vector<TrackerSpec> specs;
+  for (const std::string& tracker : file.trackers) check_name(trackers, tracker, tracker);
   for (const std::string& tracker : file.trackers)
     specs.push_back(read_tracker_spec(tracker, resolved.of(tracker), own_table(file, tracker),
                                       (*file.table)["sensors"].as_table(), name));
@@ -142,6 +144,11 @@ std::vector<TrackerSpec> read_tracker_specs(const StudyFile& file, const std::st
 
 TableReader tracker_reader(const TrackerSpec& spec, const SharedTable& configuration, const std::string& file) {
   return {configuration, file, "trackers." + spec.name, spec.own};
+}
+
+void check_name(const TableReader& table, const std::string& key, const std::string& name) {
+  if (name.empty() || printable(name) != name)
+    throw table.error(key, "is no name: " + as_shown(name), "characters that can be shown, at least one");
 }
 
 std::vector<std::string> names_of(const std::vector<TrackerSpec>& trackers) {

@@ -36,6 +36,9 @@ struct TrackerSpec {
 /// another so often that a short file would take much memory.
 std::vector<TrackerSpec> read_tracker_specs(const StudyFile& file, const std::string& name);
 
+/// Refuses what tables and files of results cannot show as a name: nothing, control characters, bytes that are no UTF-8.
+void check_name(const TableReader& table, const std::string& key, const std::string& name);
+
 /// Reads its table, or the same with other numbers in it. What it has only taken over need not be of use to it.
 TableReader tracker_reader(const TrackerSpec& spec, const SharedTable& configuration, const std::string& file);
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <system_error>
 #include <toml++/toml.h>
+#include <utility>
 #include <vector>
 
 #include "app/data_folder.hpp"
@@ -51,8 +52,12 @@ std::unique_ptr<Scenario> scenario_of(const SimulateArguments& options) {
                      "a scenario of kind \"bearings_only\" or \"passive_sonar\"");
   RecordingOptions reading;
   reading.target = options.track_id;
-  return std::make_unique<BearingsOfTrack>(read_target_track(options.track, reading), options.track_from_s,
-                                           bearings->parameters());
+  Recording track = read_target_track(options.track, reading);
+  try {
+    return std::make_unique<BearingsOfTrack>(std::move(track), options.track_from_s, bearings->parameters());
+  } catch (const InputError& error) {
+    throw InputError(options.track, error.found(), error.valid());
+  }
 }
 
 std::filesystem::path log_path(const SimulateArguments& options, std::size_t run, const char* extension) {

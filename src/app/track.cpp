@@ -68,8 +68,9 @@ struct TrackArguments {
 };
 
 void report(const Study& study, const TrackArguments& options, const TrackRun& run, const Recording::Counts& rows) {
-  fmt::print("{}: {} measurements, {} missing, {} repeated rows dropped\n\n", options.log, run.contents().measurements,
-             rows.missing, rows.repeated);
+  const std::size_t count = run.contents().measurements;
+  fmt::print("{}: {} measurement{}, {} missing, {} repeated rows dropped\n\n", options.log, count,
+             count == 1 ? "" : "s", rows.missing, rows.repeated);
   fmt::print("{}", consistency_table(run.all()));
   for (const Followed& followed : run.all())
     if (followed.records == 0)

@@ -269,6 +269,14 @@ TEST(Program, SimulatesBearingsOfARecordedTrack) {
   EXPECT_THAT(run(folder, "simulate scenario.toml --track ais.csv -o none").err, HasSubstr("bearings_only"));
 }
 
+TEST(Program, TrackWithoutATruthIsNamed) {
+  const TemporaryFolder folder;
+  folder.write("gps.csv", "time_s,east_m,north_m\n0,1,2\n1,2,3\n");
+  const Outcome outcome = run(folder, "simulate bearings_only_m --track gps.csv -o logs");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("truebearing: gps.csv: has no truth of one target")) << outcome.err;
+}
+
 TEST(Program, MissingCellsAreCoastedAndCounted) {
   const TemporaryFolder folder;
   write_study(folder, plain_study());

@@ -39,7 +39,7 @@ TEST(Rare, OfWhatWasNotFoundItDoesNotSayThatItIsImpossible) {
   const TemporaryFolder folder;
   write_study(folder, tuned_study());
   const Outcome outcome =
-      run(folder, "rare small.toml plain --loss position_m=1e9 --draws 20 --repetitions 2 --json none.json");
+      run(folder, "rare small.toml plain --loss position_m=6500 --draws 30 --repetitions 2 --seed 3 --json none.json");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out,
               AllOf(HasSubstr("was not found"), HasSubstr("no repetition found a loss"), Not(HasSubstr("+- 0"))));

@@ -65,14 +65,17 @@ TEST(Report, TrackAndTmaDrawTheirLogs) {
   const TemporaryFolder folder;
   write_study(folder, tuned_study());
   std::string log = "time_s,position_m,truth_position_m,truth_velocity_mps\n";
+  std::string with_sigma = "time_s,position_m,position_sigma_m,truth_position_m,truth_velocity_mps\n";
   std::string bearings = "time_s,bearing_deg,bearing_sigma_deg,sensor_east_m,sensor_north_m\n";
   for (int k = 1; k <= 40; ++k) {
     log += fmt::format("{},{},{},10\n", k, 10 * k + 500 * (k % 3 - 1), 10 * k);
+    with_sigma += fmt::format("{},{},400,{},10\n", k, 10 * k, 10 * k);
     const double own_north = k <= 20 ? 50.0 * k : 1000.0, own_east = k <= 20 ? 0.0 : 50.0 * (k - 20);
     const double bearing = std::atan2(8000.0 - 20.0 * k - own_east, 5000.0 - own_north) * 180.0 / std::numbers::pi;
     bearings += fmt::format("{},{:.6f},0.5,{},{}\n", 10 * k, bearing + 0.3 * (k % 3 - 1), own_east, own_north);
   }
   folder.write("log.csv", log);
+  folder.write("with_sigma.csv", with_sigma);
   folder.write("bearings.csv", bearings);
   const Outcome tracked = run(folder, "track small.toml log.csv --report track.html");
   ASSERT_EQ(tracked.status, 0) << tracked.err;
@@ -84,8 +87,9 @@ TEST(Report, TrackAndTmaDrawTheirLogs) {
     EXPECT_THAT(folder.read("track.html"), HasSubstr(shown));
 
   // A recorded truth is measured afresh; the page tells of the median run, and is made of the JSON alone.
-  const Outcome afresh = run(
-      folder, "compare small.toml --truth log.csv --runs 5 --report truth.html --json truth.json --svg truth --quiet");
+  const Outcome afresh = run(folder,
+                             "compare small.toml --truth with_sigma.csv --runs 5 --report truth.html --json truth.json "
+                             "--svg truth --quiet");
   ASSERT_EQ(afresh.status, 0) << afresh.err;
   const std::string measured = folder.read("truth.html");
   EXPECT_EQ(read_markup(measured).error, "");

@@ -225,9 +225,22 @@ void write_tma_report(const ReportArguments& report, const std::string& json, co
   if (!report.svg.empty()) write_plots(report.svg, tma_plot_files(json, log));
 }
 
-void tma(const TmaArguments& options) {
+// An option that a method takes no notice of is not ignored in silence.
+void check_options(const TmaArguments& options) {
   if ((options.range_m > 0.0) != (options.range_sigma_m > 0.0))
     throw InputError("--range, --range-sigma", "stand one without the other", "both or neither");
+  const auto refuse = [&](bool given, const char* option, const char* methods) {
+    if (given) throw InputError(option, "is nothing that --method " + options.method + " takes notice of", methods);
+  };
+  const bool is_map = options.method == "map";
+  refuse(!is_map && options.range_m > 0.0, "--range", "--method map");
+  refuse(!is_map && options.velocity_sigma_mps != TmaArguments{}.velocity_sigma_mps, "--velocity-sigma",
+         "--method map");
+  refuse(options.is_cho() && std::isfinite(options.huber_sigmas), "--huber", "--method ml or map");
+}
+
+void tma(const TmaArguments& options) {
+  check_options(options);
   check_outputs({options.json, options.report.page}, {options.log});
   const Recording recording = read_tma_log(options);
   TmaAnswer answer;

@@ -12,7 +12,7 @@ namespace {
 
 std::string row(const char* name, int decimals, double value, double sigma, const std::optional<double>& truth,
                 bool known) {
-  return fmt::format("{:<14}{:>16}{:>14}{:>14}\n", name, known ? figure(value, sigma, decimals) : "not determined",
+  return fmt::format("{:<14} {:>15} {:>13} {:>13}\n", name, known ? figure(value, sigma, decimals) : "not determined",
                      known ? figure(sigma, sigma, decimals) : "", truth ? figure(*truth, sigma, decimals) : "");
 }
 

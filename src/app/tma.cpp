@@ -194,7 +194,8 @@ void examine(const TmaWindows& windows, const DopplerWindow* used, TmaAnswer& an
     answer.frequency_sigma_hz = root_mean_square_sigma(used->size(), [&](std::size_t i) { return used->weight(i); });
   if (checks.change) answer.stretches = stretches_of(windows, used, *checks.change);
   if (used) return;
-  if (checks.rest.too_large) answer.two_contacts = find_two_contacts(bearings, checks.least_squares);
+  if (checks.rest.too_large || 10 * checks.outliers.size() >= bearings.size())
+    answer.two_contacts = find_two_contacts(bearings, checks.least_squares, checks.outliers);
   if (checks.rest.too_large || !answer.range_is_known())
     answer.reversed = find_reversed(bearings, checks.least_squares);
 }

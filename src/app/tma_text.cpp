@@ -92,10 +92,22 @@ std::string whiteness(const ResidualChecks& checks) {
                      checks.white ? "white" : "NOT WHITE");
 }
 
+// As well as by a change of velocity, and likelier.
+bool explained_otherwise(const TmaAnswer& answer) {
+  if (answer.causes.empty()) return false;
+  const std::string& first = answer.causes.front().kind;
+  return first == "own_ship" || first == "bearing_bias" || first == "back_bearings" || first == "two_contacts";
+}
+
 std::string manoeuvre_lines(const TmaAnswer& answer) {
   const ResidualChecks& checks = answer.residuals;
   if (!checks.change) return "no sign that the target changed its velocity\n";
   const VelocityChange& change = *checks.change;
+  if (explained_otherwise(answer))
+    return fmt::format(
+        "a change of the target's velocity at about {} s ({} to {} s; score {:.0f}) would look much like it, but there "
+        "is a likelier explanation: see the end\n",
+        seconds(change.time_s), seconds(change.earliest_s), seconds(change.latest_s), checks.manoeuvre);
   std::string text = fmt::format(
       "THE TARGET SEEMS TO HAVE CHANGED ITS VELOCITY at about {} s ({} to {} s; score {:.0f}): one course and speed do "
       "not\nexplain these measurements, and the figures above average over several.\n",

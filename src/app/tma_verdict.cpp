@@ -69,6 +69,62 @@ void add_other_noise(const TmaAnswer& answer, std::vector<TmaCause>& causes) {
         answer.frequency_sigma_hz, "Hz");
 }
 
+double of_unknowns(const ResidualChecks& checks, double unknowns) {
+  return unknowns * std::log(std::max(static_cast<double>(checks.degrees_of_freedom), 2.0));
+}
+
+// About the least squares of the bearings that are no outliers, and of these too.
+double sum_of_squares(const TmaAnswer& answer) {
+  double sum = 2.0 * answer.residuals.least_squares.cost;
+  for (const TmaOutlier& outlier : answer.outliers) sum += outlier.sigmas * outlier.sigmas;
+  return sum;
+}
+
+// Which bearing is of which contact is unknown too: 2 ln of how many ways there are to part them.
+double of_parting(const TmaAnswer& answer) {
+  const std::size_t *count = answer.two_contacts->count, both = count[0] + count[1];
+  double sum = 0.0;
+  for (const double part : {static_cast<double>(count[0]), static_cast<double>(count[1])})
+    sum += 2.0 * part * std::log(static_cast<double>(both) / part);
+  return sum;
+}
+
+double likelihood_of_two(const TmaAnswer& answer) {
+  return sum_of_squares(answer) - 2.0 * answer.two_contacts->cost - of_unknowns(answer.residuals, 4.0) -
+         of_parting(answer);
+}
+
+// What leaves residuals as they should be says that the noise is as it is said to be.
+bool fits_at_the_stated_sigma(const TmaAnswer& answer) {
+  const BearingBias& bias = answer.residuals.bias;
+  return (answer.two_contacts && likelihood_of_two(answer) > 0.0) || answer.reversed ||
+         (bias.detected && SumOfSquares(2.0 * bias.estimate.cost, answer.residuals.rest.degrees_of_freedom - 1).fits());
+}
+
+double likelihood_of_change(const ResidualChecks& checks) {
+  return checks.manoeuvre - of_unknowns(checks, 3.0);
+}
+
+double likelihood_of_bias(const ResidualChecks& checks) {
+  return checks.bias.gain - of_unknowns(checks, 1.0);
+}
+
+// A manoeuvre bends the bearings as an error that is constant would, but that explains it far worse.
+bool bias_is_likely(const ResidualChecks& checks) {
+  constexpr double kFarWorse = 10.0;
+  if (!checks.bias.detected) return false;
+  return !checks.change || likelihood_of_bias(checks) > likelihood_of_change(checks) - kFarWorse;
+}
+
+TmaCause bearing_bias(const TmaAnswer& answer) {
+  const BearingBias& bias = answer.residuals.bias;
+  std::string says =
+      fmt::format("all bearings seem to be {:+.1f} +- {:.1f} deg off", degrees(bias.bias_rad), degrees(bias.sigma_rad));
+  if (answer.range_is_known())
+    says += ": without that " + motion_with_sigmas(bias.estimate.x, bias.estimate.P, answer.own_ship);
+  return {"bearing_bias", likelihood_of_bias(answer.residuals), says};
+}
+
 std::string motion_or_not(const TmaAnswer& answer) {
   if (!answer.range_is_known()) {
     const char* what = answer.source && answer.source->used ? "bearings and frequencies" : "bearings";
@@ -82,7 +138,7 @@ std::string motion_or_not(const TmaAnswer& answer) {
 
 void find_causes(TmaAnswer& answer) {
   const ResidualChecks& checks = answer.residuals;
-  const double count = static_cast<double>(checks.degrees_of_freedom), of_an_unknown = std::log(std::max(count, 2.0));
+  const double count = static_cast<double>(checks.degrees_of_freedom), of_an_unknown = of_unknowns(checks, 1.0);
   std::vector<TmaCause>& causes = answer.causes;
   causes.clear();
   if (!answer.outliers.empty()) {
@@ -91,30 +147,24 @@ void find_causes(TmaAnswer& answer) {
     causes.push_back({"outliers", squares, says_of_outliers(answer)});
   }
   if (checks.change)
-    causes.push_back({"manoeuvre", checks.manoeuvre - 3.0 * of_an_unknown,
+    causes.push_back({"manoeuvre", likelihood_of_change(checks),
                       fmt::format("the target changed its velocity at about {} s (between {} and {} s)",
                                   seconds(checks.change->time_s), seconds(checks.change->earliest_s),
                                   seconds(checks.change->latest_s))});
-  if (answer.two_contacts)
-    causes.push_back({"two_contacts",
-                      2.0 * (checks.least_squares.cost - answer.two_contacts->cost) - 4.0 * of_an_unknown - count,
+  if (answer.two_contacts && likelihood_of_two(answer) > 0.0)
+    causes.push_back({"two_contacts", likelihood_of_two(answer),
                       fmt::format("the bearings are of two contacts, {} of one and {} of the other",
                                   answer.two_contacts->count[0], answer.two_contacts->count[1])});
   if (answer.reversed) {
     const Motion motion(answer.reversed->x, answer.own_ship);
-    causes.push_back({"back_bearings", 2.0 * (checks.least_squares.cost - answer.reversed->cost),
+    causes.push_back({"back_bearings", sum_of_squares(answer) - 2.0 * answer.reversed->cost - of_an_unknown,
                       fmt::format("all bearings seem to be 180 degrees off (of the other end of an array, or back "
                                   "bearings): turned round they give range {:.0f} m, course {:.1f} deg, speed {:.2f} "
                                   "m/s",
                                   motion.range_m, motion.course_deg, motion.speed_mps)});
   }
-  // A manoeuvre bends the bearings as well as an error that is constant would, but not so well.
-  if (checks.bias.detected && !checks.change) {
-    const double bias_deg = degrees(checks.bias.bias_rad), sigma_deg = degrees(checks.bias.sigma_rad);
-    causes.push_back({"bearing_bias", bias_deg * bias_deg / (sigma_deg * sigma_deg) - of_an_unknown,
-                      fmt::format("all bearings seem to be {:+.1f} +- {:.1f} deg off", bias_deg, sigma_deg)});
-  }
-  add_other_noise(answer, causes);
+  if (bias_is_likely(checks)) causes.push_back(bearing_bias(answer));
+  if (!fits_at_the_stated_sigma(answer)) add_other_noise(answer, causes);
   if (!checks.white && causes.empty())
     causes.push_back({"not_white", checks.lag_one * checks.lag_one - of_an_unknown,
                       "the residuals are correlated: the noise is, or the target does not keep one course and speed"});

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "truebearing/core/angle.hpp"
 #include "truebearing/core/chi_square.hpp"
+#include "truebearing/tma/residual_checks.hpp"
 #include "truebearing/tma/target_motion_batch.hpp"
 
 namespace truebearing {
@@ -23,6 +25,11 @@ BearingWindow part(const BearingWindow& window, const std::vector<bool>& of_seco
   return window.without(others);
 }
 
+// Of so many bearings, in either part.
+std::size_t fewest_of(std::size_t bearings) {
+  return std::max<std::size_t>(5, bearings / 10);
+}
+
 // One contact and then another is no mixture: that is what a manoeuvre looks like.
 bool in_turns(const std::vector<bool>& of_second) {
   int changes = 0;
@@ -30,21 +37,19 @@ bool in_turns(const std::vector<bool>& of_second) {
   return changes > 2;
 }
 
-}  // namespace
-
-std::optional<TwoContacts> find_two_contacts(const BearingWindow& window, const BatchEstimate& one) {
+// From one parting to the next, until none changes its part.
+std::optional<TwoContacts> settle(const BearingWindow& window, std::vector<bool> of_second) {
   constexpr int kMostRounds = 12, kParameters = 8;
   constexpr double kConfidence = 0.999;
-  const std::size_t m = window.size(), fewest = std::max<std::size_t>(5, m / 10);
+  const std::size_t m = window.size();
   TwoContacts two;
-  two.of_second.resize(m);
-  for (std::size_t i = 0; i < m; ++i) two.of_second[i] = normalised(window, i, one) > 0.0;
+  two.of_second = std::move(of_second);
   TargetMotionBatch batch;
   for (int round = 0; round < kMostRounds; ++round) {
     for (const int k : {0, 1}) {
       const BearingWindow own = part(window, two.of_second, k == 1);
       two.count[k] = own.size();
-      if (own.size() < fewest) return std::nullopt;
+      if (own.size() < fewest_of(m)) return std::nullopt;
       two.estimate[k] = batch.solve(own);
       if (!two.estimate[k].found) return std::nullopt;
     }
@@ -52,9 +57,9 @@ std::optional<TwoContacts> find_two_contacts(const BearingWindow& window, const 
     bool settled = true;
     for (std::size_t i = 0; i < m; ++i) {
       const double first = normalised(window, i, two.estimate[0]), second = normalised(window, i, two.estimate[1]);
-      const bool of_second = std::abs(second) < std::abs(first);
-      settled = settled && of_second == two.of_second[i];
-      two.of_second[i] = of_second;
+      const bool of_the_second = std::abs(second) < std::abs(first);
+      settled = settled && of_the_second == two.of_second[i];
+      two.of_second[i] = of_the_second;
       two.cost += 0.5 * std::min(first * first, second * second);
     }
     if (settled) break;
@@ -63,6 +68,23 @@ std::optional<TwoContacts> find_two_contacts(const BearingWindow& window, const 
   if (freedom < 1.0 || 2.0 * two.cost > chi_square_quantile(kConfidence, freedom) || !in_turns(two.of_second))
     return std::nullopt;
   return two;
+}
+
+}  // namespace
+
+std::optional<TwoContacts> find_two_contacts(const BearingWindow& window, const BatchEstimate& one,
+                                             std::span<const Outlier> outliers) {
+  const std::size_t m = window.size();
+  std::vector<bool> apart(m), to_the_right(m), every_second(m);
+  for (const Outlier& outlier : outliers) apart[outlier.at] = true;
+  for (std::size_t i = 0; i < m; ++i) {
+    to_the_right[i] = normalised(window, i, one) > 0.0;
+    every_second[i] = i % 2 == 1;
+  }
+  if (outliers.size() >= fewest_of(m))
+    if (auto two = settle(window, std::move(apart))) return two;
+  if (auto two = settle(window, std::move(to_the_right))) return two;
+  return settle(window, std::move(every_second));
 }
 
 std::optional<BatchEstimate> find_reversed(const BearingWindow& window, const BatchEstimate& one) {
@@ -75,6 +97,8 @@ std::optional<BatchEstimate> find_reversed(const BearingWindow& window, const Ba
   if (!estimate.found || !batch.observability().observable() ||
       2.0 * (as_it_is - estimate.cost) < Observability::kRuledOut)
     return std::nullopt;
+  // Of two misfits either may be the smaller.
+  if (check_residuals(turned, estimate).rest.too_large) return std::nullopt;
   return estimate;
 }
 

@@ -4,10 +4,12 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "truebearing/tma/batch_estimate.hpp"
 #include "truebearing/tma/bearing_window.hpp"
+#include "truebearing/tma/outliers.hpp"
 
 namespace truebearing {
 
@@ -19,12 +21,15 @@ struct TwoContacts {
 };
 
 /// Parts the bearings between two targets, each to the one that it fits better, until none changes its part. Begins
-/// with those to either side of `one`, the least squares of all. Nothing where that does not end in residuals as they
-/// should be (chi-square below its 99.9 % quantile), with a tenth of the bearings or more in either part, in turns.
-std::optional<TwoContacts> find_two_contacts(const BearingWindow& window, const BatchEstimate& one);
+/// with `outliers` and the others where a tenth of them and more are that, then with those to either side of `one`, the
+/// least squares of all, then with every second, until one of these ends in an answer: residuals as they should be
+/// (chi-square below its 99.9 % quantile), with a tenth of the bearings or more in either part, in turns.
+std::optional<TwoContacts> find_two_contacts(const BearingWindow& window, const BatchEstimate& one,
+                                             std::span<const Outlier> outliers = {});
 
 /// The target that fits the bearings turned by 180 degrees, where it fits by a likelihood ratio of more than
-/// Observability::kRuledOut better than `one` fits them as they are, and its range is determined.
+/// Observability::kRuledOut better than `one` fits them as they are, its range is determined, and what is left is
+/// as it should be, outliers apart.
 std::optional<BatchEstimate> find_reversed(const BearingWindow& window, const BatchEstimate& one);
 
 }  // namespace truebearing

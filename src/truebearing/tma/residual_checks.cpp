@@ -88,18 +88,17 @@ void look_for_a_change(VelocityChangeScan& scan, ResidualChecks& checks) {
   if (checks.manoeuvred) checks.change = change;
 }
 
-// What an estimate gains where this is taken off all bearings.
-double gained_without(double bias_rad, const BearingWindow& window, const DopplerWindow* frequencies,
-                      const BatchEstimate& estimate) {
-  BearingWindow turned;
+// The least squares where this is taken off all bearings.
+BatchEstimate estimate_without(double bias_rad, const BearingWindow& window, const DopplerWindow* frequencies,
+                               const BatchEstimate& start, BearingWindow& turned) {
+  turned.clear();
   for (std::size_t i = 0; i < window.size(); ++i)
     turned.add(window.time_s(i), window.bearing_rad(i) - bias_rad, 1.0 / std::sqrt(window.weight(i)), window.site_m(i));
-  const BatchEstimate better = TargetMotionBatch().solve(turned, std::nullopt, &estimate.x, frequencies);
-  return better.found ? 2.0 * (estimate.cost - better.cost) : 0.0;
+  return TargetMotionBatch().solve(turned, std::nullopt, &start.x, frequencies);
 }
 
-void look_for_a_bias(const MotionRows& rows, const BearingWindow& window, const DopplerWindow* frequencies,
-                     ResidualChecks& checks) {
+// To first order about an estimate that `rows` look at.
+BearingBias bias_about(const MotionRows& rows, const BatchEstimate& estimate) {
   const auto of_bias = [](const MotionRow& row) {
     Eigen::Matrix<double, 1, 5> j;
     j << row.of_y, row.level < 0 ? row.per_unit : 0.0;
@@ -109,20 +108,54 @@ void look_for_a_bias(const MotionRows& rows, const BearingWindow& window, const 
   const Eigen::Matrix4d P = inverse_of_what_is_known(equations.A.topLeftCorner<4, 4>());
   const Eigen::Vector4d coupling = equations.A.topRightCorner<4, 1>(), taken = P * coupling;
   const double information = equations.A(4, 4) - coupling.dot(taken);
-  const BatchEstimate& estimate = checks.least_squares;
   const ModifiedPolar& polar = rows.polar();
-  checks.bias.moves = ConstantVelocity<2, ContinuousWhiteNoise>{}.F(estimate.time_s - polar.origin_s()) *
-                      polar.jacobian(polar_of(estimate, polar)) * taken;
-  if (!(information > 1e-9 * equations.A(4, 4))) return;
-  checks.bias.sigma_rad = 1.0 / std::sqrt(information);
-  checks.bias.bias_rad = (equations.gradient(4) - taken.dot(equations.gradient.head<4>())) / information;
-  const auto is_seen = [&](double statistic) {
-    const double noise = noise_variance(checks.rest.chi_square - statistic, checks.rest.degrees_of_freedom - 1);
-    return statistic > noise * chi_square_quantile(1.0 - kByChance, 1.0);
+  BearingBias bias;
+  bias.moves = ConstantVelocity<2, ContinuousWhiteNoise>{}.F(estimate.time_s - polar.origin_s()) *
+               polar.jacobian(polar_of(estimate, polar)) * taken;
+  if (!(information > 1e-9 * equations.A(4, 4))) return bias;
+  bias.sigma_rad = 1.0 / std::sqrt(information);
+  bias.bias_rad = (equations.gradient(4) - taken.dot(equations.gradient.head<4>())) / information;
+  return bias;
+}
+
+// The error and the motion that together leave least: a few steps, each about what the last one ended at.
+void fit_a_bias(const BearingWindow& window, const DopplerWindow* frequencies, BearingBias& bias) {
+  constexpr int kMostSteps = 6;
+  constexpr double kNoMore = 0.01;  // of a standard deviation
+  BearingWindow turned;
+  for (int step = 0; step < kMostSteps; ++step) {
+    BatchEstimate better = estimate_without(bias.bias_rad, window, frequencies, bias.estimate, turned);
+    if (!better.found) return;
+    MotionRows rows(turned, frequencies);
+    rows.look_at(polar_of(better, rows.polar()));
+    const BearingBias rest = bias_about(rows, better);
+    bias.estimate = better;
+    bias.estimate.P += rest.moves * rest.moves.transpose() * rest.sigma_rad * rest.sigma_rad;
+    if (!std::isfinite(rest.sigma_rad)) return;
+    bias.sigma_rad = rest.sigma_rad;
+    if (std::abs(rest.bias_rad) < kNoMore * rest.sigma_rad) return;
+    bias.bias_rad += rest.bias_rad;
+  }
+}
+
+void look_for_a_bias(const MotionRows& rows, const BearingWindow& window, const DopplerWindow* frequencies,
+                     ResidualChecks& checks) {
+  BearingBias& bias = checks.bias;
+  bias = bias_about(rows, checks.least_squares);
+  if (!std::isfinite(bias.sigma_rad)) return;
+  const auto in_units_of_noise = [&](double statistic) {
+    return statistic / noise_variance(checks.rest.chi_square - statistic, checks.rest.degrees_of_freedom - 1);
   };
+  const double seen = chi_square_quantile(1.0 - kByChance, 1.0), sigmas = bias.bias_rad / bias.sigma_rad;
+  if (in_units_of_noise(sigmas * sigmas) <= seen) return;
   // What the first order promises has to be there.
-  checks.bias.detected = is_seen(checks.bias.bias_rad * checks.bias.bias_rad * information) &&
-                         is_seen(gained_without(checks.bias.bias_rad, window, frequencies, estimate));
+  BearingWindow turned;
+  const BatchEstimate better = estimate_without(bias.bias_rad, window, frequencies, checks.least_squares, turned);
+  bias.detected = better.found && in_units_of_noise(2.0 * (checks.least_squares.cost - better.cost)) > seen;
+  if (!bias.detected) return;
+  bias.estimate = better;
+  fit_a_bias(window, frequencies, bias);
+  bias.gain = in_units_of_noise(2.0 * (checks.least_squares.cost - bias.estimate.cost));
 }
 
 // Of residuals that a few parameters took a part of: by the share of their variance that was left to them.

@@ -44,6 +44,9 @@ struct BearingBias {
   /// How far an error of one radian moves the least-squares estimate: [east, north, v_east, v_north] at its time.
   Eigen::Vector4d moves = Eigen::Vector4d::Zero();
   bool detected = false;
+  // Where it is detected:
+  double gain = 0.0;         ///< 2 ln of the likelihood ratio to no error
+  BatchEstimate estimate{};  ///< the least squares without it, its uncertainty in P
 };
 
 struct ResidualChecks {

@@ -207,6 +207,7 @@ void solve(TmaWindows& windows, const TmaArguments& options, TmaAnswer& answer) 
   else
     used = solve_by_batch(windows, options, answer);
   if (!answer.estimate.found) return;
+  answer.own_ship_is_off = own_ship_is_off(windows);
   examine(windows, used, answer);
   if (answer.observability && !answer.range_is_known())
     answer.hypotheses = hypotheses(windows.bearings, used, {.huber_sigmas = options.huber_sigmas});

@@ -48,7 +48,7 @@ struct TmaStretch {
 
 /// What the measurements look like besides a target on one course and speed.
 struct TmaCause {
-  std::string kind;   ///< outliers, manoeuvre, two_contacts, back_bearings, bearing_bias, noise_larger, ...
+  std::string kind;   ///< own_ship, outliers, manoeuvre, two_contacts, back_bearings, bearing_bias, noise_larger, ...
   double likelihood;  ///< 2 ln of the likelihood ratio to one course and speed, less ln m for each unknown
   std::string says;
 };
@@ -77,6 +77,7 @@ struct TmaAnswer {
 
   std::vector<TmaOutlier> outliers, frequency_outliers;
   std::vector<TmaStretch> stretches;  ///< before and after the manoeuvre, where there was one
+  std::string own_ship_is_off;        ///< how its positions and its velocity disagree; empty where they do not
   std::optional<TwoContacts> two_contacts;
   std::optional<BatchEstimate> reversed;  ///< of all bearings turned by 180 degrees, where that fits better
   double bearing_sigma_rad = 0.0, frequency_sigma_hz = 0.0;  ///< root mean squares of what was claimed

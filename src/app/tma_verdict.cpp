@@ -141,6 +141,9 @@ void find_causes(TmaAnswer& answer) {
   const double count = static_cast<double>(checks.degrees_of_freedom), of_an_unknown = of_unknowns(checks, 1.0);
   std::vector<TmaCause>& causes = answer.causes;
   causes.clear();
+  // No other can be likelier than what explains all of them: positions and velocity contradict each other as it is.
+  if (!answer.own_ship_is_off.empty())
+    causes.push_back({"own_ship", sum_of_squares(answer) + count, answer.own_ship_is_off});
   if (!answer.outliers.empty()) {
     double squares = 0.0;
     for (const TmaOutlier& outlier : answer.outliers) squares += outlier.sigmas * outlier.sigmas - of_an_unknown;

@@ -49,9 +49,9 @@ std::string unknown_subcommand(const CLI::App& app, int argc, const char* const*
 
 // Help, the version, or what is wrong with the usage.
 int finish(CLI::App& app, const CLI::ParseError& error) {
-  constexpr std::size_t kMostShown = 220;
+  constexpr std::size_t kLongestFault = 220;
   if (error.get_exit_code() != 0) {
-    fail(shortened(printable(error.what()), kMostShown) + "; --help says what is valid");
+    fail(shortened(printable(error.what()), kLongestFault) + "; --help says what is valid");
     return 2;
   }
   app.exit(error);

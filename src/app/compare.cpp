@@ -67,7 +67,7 @@ void run_compare(const CompareArguments& arguments, Ranks* ranks) {
   options.seed = arguments.seed.value_or(study.seed());
   std::vector<std::filesystem::path> inputs = study.input_files();
   if (!options.truth.empty()) inputs.emplace_back(options.truth);
-  if (is_first(ranks)) check_outputs({options.json, options.report.page}, inputs);
+  if (is_first(ranks)) check_outputs(options.report, {options.json}, inputs);
   check_ranks(ranks, inputs,
               fmt::format("{} {} {} {} {}", options.seed, options.runs, arguments.all, arguments.retrain,
                           options.details || options.report.wanted()));

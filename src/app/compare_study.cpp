@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/compare_study.hpp"
 
-#include <algorithm>
 #include <fmt/format.h>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -29,14 +28,6 @@ std::unique_ptr<Scenario> recorded_truth(const Study& study, const CompareStudyO
   return recorded;
 }
 
-// How many runs of the scenarios differ; as many as there are asked for where one draws each anew.
-std::size_t different_runs(const std::vector<NamedScenario>& scenarios, const ComparisonOptions& options) {
-  std::size_t most = 0;
-  for (const NamedScenario& named : scenarios)
-    most = std::max(most, named.scenario->different_runs(options.role).value_or(options.runs));
-  return std::min(most, options.runs);
-}
-
 // The run between the better and the worse half; the first where none was drawn.
 std::size_t median_run(const std::vector<RunPicture>& pictures) {
   for (const RunPicture& picture : pictures)
@@ -60,15 +51,12 @@ StudyComparison::StudyComparison(const Study& study, const CorrectionModels& mod
     if (const std::string note = named.scenario->note(); !note.empty()) notes_ += note + "\n";
   comparison_options_.seed = options.seed;
   if (options.runs > 0) comparison_options_.runs = options.runs;
-  // The same run again would count as one more that is independent of the first.
-  const std::size_t asked_runs =
-      std::exchange(comparison_options_.runs, different_runs(scenarios_, comparison_options_));
-  if (comparison_options_.runs < asked_runs)
-    notes_ +=
-        fmt::format("runs: {} in place of {}, which would be the same again\n", comparison_options_.runs, asked_runs);
   comparison_options_.threads = options.threads;
   comparison_options_.details = options.details || options.report.wanted();
   runs_ = std::make_unique<ComparisonRuns>(trackers_, scenarios_, comparison_options_);
+  const std::size_t asked = std::exchange(comparison_options_.runs, runs_->options().runs);
+  if (comparison_options_.runs < asked)
+    notes_ += fmt::format("runs: {} in place of {}, which would be the same again\n", comparison_options_.runs, asked);
 }
 
 // Why nothing is scored, where no step is late enough for it; else empty.

@@ -67,8 +67,8 @@ void learn(const LearnArguments& arguments, Ranks* ranks) {
   for (const fs::path& file : own) outputs.push_back(output_of(arguments, file));
   for (const std::string& name : names)
     models_to_write.push_back(output_of(arguments, study.tracker(name).correction->model));
-  outputs.insert(outputs.end(), {options.json, options.report.page});
-  if (is_first(ranks)) check_products(study, outputs, own);
+  outputs.push_back(options.json);
+  if (is_first(ranks)) check_outputs(options.report, outputs, inputs_without(study, own));
 
   WorkflowOptions workflow{options.seed, options.threads, options.quiet, ranks};
   keep_checkpoints(study, names, models_to_write, workflow);

@@ -35,7 +35,7 @@ void merge(const MergeArguments& arguments) {
                      "shards of the study as it is");
   std::vector<std::filesystem::path> inputs = study.input_files();
   inputs.insert(inputs.end(), parts.begin(), parts.end());
-  check_outputs({options.json, options.report.page}, inputs);
+  check_outputs(options.report, {options.json}, inputs);
   options.seed = header.seed;
   options.runs = header.runs;
   options.details = header.details;

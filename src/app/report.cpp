@@ -20,7 +20,7 @@ struct PageArguments {
 };
 
 void make_page(const PageArguments& options) {
-  check_outputs({options.report.page}, {options.results.begin(), options.results.end()});
+  check_outputs(options.report, {}, {options.results.begin(), options.results.end()});
   if (options.results.size() == 1) {  // of a log without truth, which has nothing to be set beside
     const std::string json = read_text_file(options.results[0], std::size_t{1} << 28);
     if (is_log_results(json, options.results[0])) {

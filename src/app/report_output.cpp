@@ -16,18 +16,20 @@ void add_report_arguments(const Subcommand& command, ReportArguments& arguments)
   command.argument("--svg", arguments.svg, "write the plots as SVG files into this folder");
 }
 
-void check_folder(const ReportArguments& arguments, std::vector<std::string> outputs) {
-  if (arguments.svg.empty()) return;
+void check_outputs(const ReportArguments& report, std::vector<std::string> outputs,
+                   const std::vector<std::filesystem::path>& inputs) {
+  outputs.push_back(report.page);
+  check_outputs(outputs, inputs);
+  if (report.svg.empty()) return;
   std::error_code unknown;
-  if (const auto kind = std::filesystem::status(arguments.svg, unknown); exists(kind) && !is_directory(kind))
-    throw InputError(arguments.svg, "is a file", "a folder for the plots");
+  if (const auto kind = std::filesystem::status(report.svg, unknown); exists(kind) && !is_directory(kind))
+    throw InputError(report.svg, "is a file", "a folder for the plots");
   const auto place = [&](const std::string& path) {
     return std::filesystem::weakly_canonical(std::filesystem::absolute(path, unknown), unknown);
   };
-  outputs.push_back(arguments.page);
   for (const std::string& output : outputs)
-    if (!output.empty() && output != "-" && place(output) == place(arguments.svg))
-      throw InputError(arguments.svg, "is to be a file and the folder of the plots", "a folder for the plots");
+    if (!output.empty() && output != "-" && place(output) == place(report.svg))
+      throw InputError(report.svg, "is to be a file and the folder of the plots", "a folder for the plots");
 }
 
 void write_plots(const std::string& folder, const std::vector<PlotFile>& plots) {

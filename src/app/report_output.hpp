@@ -2,6 +2,7 @@
 // --report and --svg, which several subcommands take: results as a page, its plots as files.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,10 @@ struct ReportArguments {
 
 void add_report_arguments(const Subcommand& command, ReportArguments& arguments);
 
-/// Refuses a folder for plots that is a file, or is to be one of the outputs. Throws InputError.
-void check_folder(const ReportArguments& arguments, std::vector<std::string> outputs);
+/// check_outputs() (output.hpp) of these outputs and the page; refuses too a folder for plots that is a file, or is to be
+/// one of them. Throws InputError.
+void check_outputs(const ReportArguments& report, std::vector<std::string> outputs,
+                   const std::vector<std::filesystem::path>& inputs);
 
 /// Writes plots into a folder, which is made where it is not there. Throws InputError.
 void write_plots(const std::string& folder, const std::vector<PlotFile>& plots);

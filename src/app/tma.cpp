@@ -13,6 +13,7 @@
 #include "app/subcommands.hpp"
 #include "app/tma_answer.hpp"
 #include "app/tma_log.hpp"
+#include "app/tma_own_ship.hpp"
 #include "truebearing/core/angle.hpp"
 #include "truebearing/core/error.hpp"
 #include "truebearing/report/tma_page.hpp"
@@ -243,7 +244,7 @@ void check_options(const TmaArguments& options) {
 
 void tma(const TmaArguments& options) {
   check_options(options);
-  check_outputs({options.json, options.report.page}, {options.log});
+  check_outputs(options.report, {options.json}, {options.log});
   const Recording recording = read_tma_log(options);
   TmaAnswer answer;
   answer.log = options.log;

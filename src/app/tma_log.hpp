@@ -50,7 +50,4 @@ Recording read_tma_log(const TmaArguments& options);
 /// last of them. Throws InputError where they are too few, or something of them is not said.
 TmaWindows tma_windows(const Recording& recording, const TmaArguments& options, TmaAnswer& answer);
 
-/// Where own ship's positions and its velocity, if the log has one, disagree grossly: in words, else empty.
-std::string own_ship_is_off(const TmaWindows& windows);
-
 }  // namespace truebearing

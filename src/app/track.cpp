@@ -64,7 +64,6 @@ struct TrackArguments {
     return is_standard_output(output) || is_standard_output(json) || is_standard_output(events) ||
            is_standard_output(report.page);
   }
-  std::vector<std::string> outputs() const { return {output, json, events, report.page}; }
 };
 
 void report(const Study& study, const TrackArguments& options, const TrackRun& run, const Recording::Counts& rows) {
@@ -251,8 +250,7 @@ void track(const TrackArguments& options) {
   if (options.smooth) smooth_all(study, options);
   std::vector<std::filesystem::path> inputs = study.input_files();
   inputs.emplace_back(options.log);
-  check_outputs(options.outputs(), inputs);
-  check_folder(options.report, {options.output, options.json, options.events});
+  check_outputs(options.report, {options.output, options.json, options.events}, inputs);
   if (const auto* logs = dynamic_cast<const StepLogScenario*>(&study.scenario()))
     return track_step_log(study, *logs, options);
   if (is_snapshot_log(options.log)) return track_snapshots(study, options);

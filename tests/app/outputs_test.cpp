@@ -111,7 +111,8 @@ TEST(Outputs, PageIsNotTheFolderOfThePlots) {
   const int files = folder.files();
   for (const char* arguments :
        {"track small.toml log.csv --report a.html --svg a.html", "track small.toml log.csv -o a.html --svg ./a.html",
-        "track small.toml log.csv --svg log.csv"}) {
+        "track small.toml log.csv --svg log.csv", "compare small.toml --runs 2 --json a.json --svg a.json",
+        "tma log.csv --report a.html --svg a.html"}) {
     const Outcome outcome = run(folder, arguments);
     EXPECT_EQ(outcome.status, 1) << arguments;
     EXPECT_THAT(outcome.err, ::testing::HasSubstr("folder for the plots")) << arguments;

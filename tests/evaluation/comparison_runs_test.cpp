@@ -10,6 +10,7 @@
 #include "tests/support/error_message.hpp"
 #include "tests/support/line_trackers.hpp"
 #include "truebearing/evaluation/report.hpp"
+#include "truebearing/simulation/recorded_scenario.hpp"
 
 namespace truebearing::comparison_runs_test {
 namespace {
@@ -133,6 +134,23 @@ TEST(ComparisonRuns, ManyRunsAreAsGoodAsOneByOne) {
   const PairedDifference paired = paired_difference(runs.scorers()[0], plain, runs.scorers()[1], tuned)[0];
   EXPECT_NEAR(many.pairs[0].differences[0].mean, paired.mean, 1e-9 * std::abs(paired.mean));
   EXPECT_NEAR(many.pairs[0].differences[0].se, paired.se, 1e-9 * paired.se);
+}
+
+// The same run again would count as one more that is independent of the first.
+TEST(ComparisonRuns, AreNoMoreThanDiffer) {
+  const TrackerSet set = trackers();
+  const LineScenario family = testing::radar_family(10);
+  const RecordedScenario replayed = RecordedScenario::replayed(family.simulate({}));
+  const auto made = [&](const std::vector<NamedScenario>& scenarios) {
+    const ComparisonRuns runs(set, scenarios, options(20));
+    std::size_t sum = 0;
+    for (std::size_t block = 0; block < runs.blocks(); ++block) sum += runs.runs_in(block);
+    EXPECT_EQ(sum, scenarios.size() * runs.options().runs);
+    return runs.options().runs;
+  };
+  EXPECT_EQ(made({{"replayed", &replayed}}), 1u);
+  EXPECT_EQ(made({{"family", &family}}), 20u);
+  EXPECT_EQ(made({{"replayed", &replayed}, {"family", &family}}), 20u);
 }
 
 TEST(ComparisonRuns, TalliesOfOtherRunsAreRefused) {

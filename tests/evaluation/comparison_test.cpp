@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tests/evaluation/corrected_set.hpp"
 #include "tests/support/correction_models.hpp"
 #include "tests/support/error_message.hpp"
 #include "tests/support/line_trackers.hpp"
@@ -18,16 +19,9 @@ namespace {
 using nlohmann::json;
 using testing::error_message;
 using ::testing::HasSubstr;
-using testing::RadarFilter;
 
 TrackerSet trackers() {
-  Ensemble ensemble;
-  RadarFilter radar;
-  ensemble.add("plain", radar.tracker());
-  radar.variance = {1e6, 5e4};
-  ensemble.add("wide", radar.tracker());
-  radar.sigma_m = 4000.0;
-  ensemble.add("tuned", radar.tracker());
+  Ensemble ensemble = testing::radar_ensemble();
   ensemble.add(
       "raw", std::make_unique<RawTracker>(state_space_of_components({"position_m"}), BoundedVector::Constant(1, 3e3)));
   TrackerSet set(std::move(ensemble));

@@ -12,8 +12,7 @@
 
 namespace truebearing::testing {
 
-/// Shows those of plain, wide and tuned, and behind them the correction nfnn.
-inline TrackerSet corrected_set(const std::vector<std::string>& shown) {
+inline Ensemble radar_ensemble() {
   Ensemble ensemble;
   RadarFilter radar;
   ensemble.add("plain", radar.tracker());
@@ -21,7 +20,12 @@ inline TrackerSet corrected_set(const std::vector<std::string>& shown) {
   ensemble.add("wide", radar.tracker());
   radar.sigma_m = 4000.0;
   ensemble.add("tuned", radar.tracker());
-  TrackerSet set(std::move(ensemble));
+  return ensemble;
+}
+
+/// Shows those of plain, wide and tuned, and behind them the correction nfnn.
+inline TrackerSet corrected_set(const std::vector<std::string>& shown) {
+  TrackerSet set(radar_ensemble());
   for (const std::string& name : shown) set.show_member(name);
   RandomStream random({}, StreamId::test);
   CorrectionModel model = line_model(radar_features(), random_parameters(random, 4, 6, 2), "plain", "tuned", "wide");

@@ -115,6 +115,19 @@ TEST(TableReader, MissingKeyNamesTheOneThatItWasMeantBy) {
   EXPECT_THAT(error_of("periods = 1", period), Not(HasSubstr("did you mean"))) << "it is a key of its own";
 }
 
+TEST(TableReader, TellsWhichOfTwoKeysItHas) {
+  std::string had;
+  const auto which = [&](TableReader& table) { had = table.one_of("to_deg", "by_deg"); };
+  EXPECT_EQ(error_of("by_deg = 1", which), "no error");
+  EXPECT_EQ(had, "by_deg");
+  EXPECT_EQ(error_of("to_deg = 1", which), "no error");
+  EXPECT_EQ(had, "to_deg");
+  EXPECT_THAT(error_of("to_deg = 1\nby_deg = 1", which),
+              HasSubstr("has both to_deg and by_deg; valid: one of the two"));
+  EXPECT_THAT(error_of("other = 1", which), HasSubstr("has neither to_deg nor by_deg; valid: one of the two"));
+  EXPECT_THAT(error_of("bi_deg = 1", which), HasSubstr("(did you mean it by \"bi_deg\"?)"));
+}
+
 TEST(TableReader, ChoiceListsTheValidNames) {
   EXPECT_THAT(error_of("a = \"plan\"",
                        [](TableReader& table) {

@@ -102,7 +102,7 @@ TEST(Vessel, TurnsToEitherSideAndSometimesNotAtAll) {
 
 TEST(Vessel, MisreadTurnsAreErrors) {
   EXPECT_THAT(error_message([] { read("speed_mps = 6\ncourse_deg = 0\nturns = [{ time_s = 5 }]\n"); }),
-              HasSubstr("to_deg and by_deg"));
+              HasSubstr("neither to_deg nor by_deg"));
   EXPECT_THAT(error_message([] {
                 read(
                     "speed_mps = 6\ncourse_deg = 0\nturns = [{ time_s = 5, by_deg = 1 }]\n"

@@ -26,6 +26,14 @@ ComparisonTally tally_of(const ComparisonRuns& runs, bool details) {
   return {runs.trackers(), runs.scorers(), runs.options(), kMostValuesApart / medians_of(runs), details};
 }
 
+ComparisonOptions of_different_runs(ComparisonOptions options, const std::vector<NamedScenario>& scenarios) {
+  std::size_t most = 0;
+  for (const NamedScenario& named : scenarios)
+    most = std::max(most, named.scenario->different_runs(options.role).value_or(options.runs));
+  options.runs = std::min(most, options.runs);
+  return options;
+}
+
 }  // namespace
 
 std::size_t runs_of_block(std::size_t runs) {
@@ -39,9 +47,9 @@ ComparisonRuns::ComparisonRuns(const TrackerSet& trackers, const std::vector<Nam
                                const ComparisonOptions& options)
     : trackers_(trackers),
       scenarios_(scenarios),
-      options_(options),
-      runs_of_block_(runs_of_block(options.runs)),
-      blocks_of_set_((options.runs + runs_of_block_ - 1) / runs_of_block_),
+      options_(of_different_runs(options, scenarios)),
+      runs_of_block_(runs_of_block(options_.runs)),
+      blocks_of_set_((options_.runs + runs_of_block_ - 1) / runs_of_block_),
       copies_(worker_count(options.threads)) {
   for (int i = 0; i < trackers.size(); ++i)
     scorers_.emplace_back(scenarios.front().scenario->truth_space(), trackers.space(i));

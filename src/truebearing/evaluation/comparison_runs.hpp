@@ -24,7 +24,8 @@ std::size_t runs_of_block(std::size_t runs);
 
 class ComparisonRuns {
  public:
-  /// All must outlive it.
+  /// Trackers and scenarios must outlive it. Of scenarios of which no more runs differ than so many (different_runs()), no
+  /// more are made: the same run again would count as one that is independent of the first.
   ComparisonRuns(const TrackerSet& trackers, const std::vector<NamedScenario>& scenarios,
                  const ComparisonOptions& options);
 
@@ -45,7 +46,7 @@ class ComparisonRuns {
 
   const TrackerSet& trackers_;
   const std::vector<NamedScenario>& scenarios_;
-  const ComparisonOptions& options_;
+  const ComparisonOptions options_;
   std::vector<Scorer> scorers_;
   std::size_t runs_of_block_;
   std::size_t blocks_of_set_;

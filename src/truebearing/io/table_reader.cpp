@@ -101,10 +101,23 @@ bool TableReader::has(const std::string& key) {
 const toml::node& TableReader::required(const std::string& key, const std::string& valid) {
   const toml::node* found = node(key);
   if (found) return *found;
-  for (const std::string& other : keys())  // which nobody has asked for yet
-    if (!asked_.contains(other) && !near_miss(other, {key}).empty())
-      throw error(key, "is missing", fmt::format("{} (did you mean it by \"{}\"?)", valid, other));
-  throw error(key, "is missing", valid);
+  throw error(key, "is missing", valid + mistyped({key}));
+}
+
+std::string TableReader::one_of(const std::string& a, const std::string& b) {
+  const bool has_a = has(a), has_b = has(b);
+  if (has_a == has_b)
+    throw error("", has_a ? fmt::format("has both {} and {}", a, b) : fmt::format("has neither {} nor {}", a, b),
+                "one of the two" + (has_a ? std::string() : mistyped({a, b})));
+  return has_a ? a : b;
+}
+
+// A key that nobody has asked for yet and that may stand for one of these, as a hint; or nothing.
+std::string TableReader::mistyped(const std::vector<std::string>& wanted) const {
+  for (const std::string& other : keys())
+    if (!asked_.contains(other) && !near_miss(other, wanted).empty())
+      return fmt::format(" (did you mean it by \"{}\"?)", other);
+  return {};
 }
 
 double TableReader::number(const std::string& key, Range range) {

@@ -36,6 +36,8 @@ class TableReader {
   TableReader(SharedTable table, std::string file, std::string path = {}, SharedTable own = nullptr);
 
   bool has(const std::string& key);
+  /// Which of two keys the table has; an error where it has neither or both.
+  std::string one_of(const std::string& a, const std::string& b);
 
   double number(const std::string& key, Range range = kAnyNumber);
   double number_or(const std::string& key, double fallback, Range range = kAnyNumber);
@@ -77,6 +79,7 @@ class TableReader {
  private:
   /// valid: what an error says would be.
   const toml::node& required(const std::string& key, const std::string& valid);
+  std::string mistyped(const std::vector<std::string>& wanted) const;
   TableReader inside(const std::string& key, const toml::table& table, std::string path) const;
   SharedTable own_inside(const std::string& key, const toml::table& table) const;
   std::string where(const std::string& key) const;

@@ -47,8 +47,8 @@ void put_in_order(GeographicTarget& target);
 std::size_t remove_null_island(GeographicTarget& target);
 
 /// Takes out the fixes that no target could have reached in time: all but those of the longest chain, so that a wrong
-/// position, be it the first, does not lock out the good ones. Of two first fixes the one
-/// counts from which the target goes on as it came.
+/// position, be it the first, does not lock out the good ones. Of two first fixes the one counts from which the target
+/// goes on as it came.
 void remove_glitches(GeographicTarget& target, double max_speed_mps);
 
 /// Takes out the fixes without an altitude, which are no places in space.

@@ -10,8 +10,8 @@
 //
 // A cell without a finite number makes the measurement missing, and so does what cannot be: a range or a frequency
 // that is not above 0, a bearing of 511 degrees, by which AIS says that there is none, or of 999 or 9999 of either sign
-// in a log that has no others beyond 360, a position at 0, 0 after others far from there. A row that says the same as the one before is dropped. All are counted. A truth that gives positions only is
-// completed by velocity_truth().
+// in a log that has no others beyond 360, a position at 0, 0 after others far from there. A row that says the same as
+// the one before is dropped. All are counted. A truth that gives positions only is completed by velocity_truth().
 #pragma once
 
 #include <cstddef>

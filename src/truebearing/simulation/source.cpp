@@ -37,10 +37,8 @@ SourceParameters read_source(TableReader& table) {
   source.frequency_hz = read_distribution(table, "frequency_hz", kPositive);
   for (TableReader& read : table.tables("changes")) {
     SourceParameters::Change change;
-    if (read.has("to_hz") == read.has("by_hz"))
-      throw read.error("", "has neither or both of to_hz and by_hz", "one of the two");
+    change.is_frequency = read.one_of("to_hz", "by_hz") == "to_hz";
     change.time_s = read_distribution(read, "time_s", {0.0, 1e6});
-    change.is_frequency = read.has("to_hz");
     change.hz = change.is_frequency ? read_distribution(read, "to_hz", kPositive) : read_distribution(read, "by_hz");
     change.share = read.number_or("share", 1.0, {0.0, 1.0});
     read.finish();

@@ -98,10 +98,8 @@ VesselParameters read_vessel(TableReader& table) {
   vessel.course_deg = read_distribution(table, "course_deg");
   for (TableReader& read : table.tables("turns")) {
     VesselParameters::Turn turn;
-    if (read.has("to_deg") == read.has("by_deg"))
-      throw read.error("", "has neither or both of to_deg and by_deg", "one of the two");
+    turn.is_course = read.one_of("to_deg", "by_deg") == "to_deg";
     turn.time_s = read_distribution(read, "time_s", kTimes);
-    turn.is_course = read.has("to_deg");
     turn.angle_deg = turn.is_course ? read_distribution(read, "to_deg") : read_distribution(read, "by_deg", kAngles);
     turn.rate_degps = read_rate(read);
     turn.share = read.number_or("share", 1.0, {0.0, 1.0});

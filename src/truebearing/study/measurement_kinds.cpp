@@ -42,15 +42,9 @@ double read_factor(const Reading& reading) {
 }
 
 double read_position_sigma(TableReader& table) {
-  const bool has_sigma = table.has("sigma_m"), has_variance = table.has("variance_m2");
-  if (!has_sigma && !has_variance) {  // it may be misspelt
-    for (const char* later : {"model", "sigma_factor", "reported", "bias", "gate_probability", "clock_offset_s"})
-      table.node(later);
-    table.finish();
-  }
-  if (has_sigma == has_variance)
-    throw table.error("", "has neither or both of sigma_m and variance_m2", "one of the two");
-  return table.has("sigma_m") ? table.number("sigma_m", kPositive) : std::sqrt(table.number("variance_m2", kPositive));
+  const std::string key = table.one_of("sigma_m", "variance_m2");
+  const double value = table.number(key, kPositive);
+  return key == "sigma_m" ? value : std::sqrt(value);
 }
 
 std::unique_ptr<AnySensor> read_position(const Reading& reading) {

@@ -44,7 +44,7 @@ std::string refusal(const std::string& study) {
 TEST(MeasuredCheck, TrackerOfSomethingElseIsRefusedByName) {
   EXPECT_EQ(refusal(study_on("cho_s1", kBatch)), "no error");
   EXPECT_THAT(refusal(study_on("radar_1d_paper", kBatch)),
-              HasSubstr("pairs.toml: trackers.batch: measures bearing (bearing_deg), the scenario gives position "
+              HasSubstr("trackers.batch: measures bearing (bearing_deg), the scenario gives position "
                         "(position_m)"));
   EXPECT_THAT(refusal(study_on("cho_s1", kRaw)),
               HasSubstr("trackers.raw: measures position (position_m), the scenario gives bearing (bearing_deg)"));

@@ -67,6 +67,29 @@ TEST(Study, UnknownKeysAreRefusedWithTheNearest) {
   EXPECT_THAT(refusal("show = false", "shown = false"), HasSubstr("did you mean \"show\""));
 }
 
+TEST(Study, FaultsOfTrackersAreNamedWithTheirLines) {
+  EXPECT_THAT(refusal("variance_m2 = 1e7", "variance_m2 = -1.0"),
+              HasSubstr("small.toml:17: trackers.plain.measurement.variance_m2"));
+  EXPECT_THAT(refusal("{ variance = [1e6, 53333.3] }", "{ variance = [1e6, -1.0] }"),
+              HasSubstr("small.toml:27: trackers.wide.start.variance"));
+  EXPECT_THAT(refusal("show = false", "show = 7"), HasSubstr("small.toml:26: trackers.wide.show"));
+  EXPECT_THAT(refusal("offset = 0.05", "offsets = 0.05"),
+              HasSubstr("small.toml:39: trackers.nfnn.features[2].offset: is missing"));
+  EXPECT_THAT(refusal("base = \"plain\"\n", ""), HasSubstr("small.toml:29: trackers.nfnn.base: is missing"));
+  EXPECT_THAT(
+      refusal("\"companion_difference\", companion = \"wide\"", "\"companion_difference\", companion = \"nfnn\""),
+      HasSubstr("small.toml:29: trackers.nfnn: "));
+}
+
+TEST(Study, FaultsOfAStudyThatIsLikeAnotherHaveItsOwnLines) {
+  const TemporaryFolder folder;
+  write_study(folder);
+  const auto path =
+      folder.write("child.toml", "like = \"small.toml\"\n[trackers.plain.measurement]\nvariance_m2 = -1.0\n");
+  EXPECT_THAT(error_message([&] { Study::load(path); }),
+              HasSubstr("child.toml:3: trackers.plain.measurement.variance_m2"));
+}
+
 TEST(Study, WrongTypesAreRefused) {
   EXPECT_THAT(refusal("name = \"small\"", "name = 7"), AllOf(HasSubstr("small.toml:1: name"), HasSubstr("text")));
   EXPECT_THAT(refusal("runs = 20\nseed", "runs = \"20\"\nseed"), AllOf(HasSubstr("runs"), HasSubstr("integer")));

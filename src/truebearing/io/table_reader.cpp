@@ -58,6 +58,12 @@ std::string integer_in(std::int64_t low, std::int64_t high) {
   return fmt::format("an integer in [{}, {}]", low, high);
 }
 
+// Of the key, or of the table where it has none; 0 where neither is of a file.
+std::uint32_t line_of(const toml::table& table, const std::string& key) {
+  const toml::node* node = table.get(key);
+  return (node ? *node : table).source().begin.line;
+}
+
 bool contains(Range range, double value) {
   return std::isfinite(value) && (range.open_low ? value > range.low : value >= range.low) && value <= range.high;
 }
@@ -76,8 +82,8 @@ TableReader::TableReader(SharedTable table, std::string file, std::string path, 
     : table_(std::move(table)), own_(std::move(own)), file_(std::move(file)), path_(std::move(path)) {}
 
 std::string TableReader::where(const std::string& key) const {
-  const toml::node* node = table_->get(key);
-  const auto line = node ? node->source().begin.line : table_->source().begin.line;
+  auto line = line_of(*table_, key);
+  if (line == 0 && own_) line = line_of(*own_, key);  // toml++ copies no lines, and a table over another is a copy
   const std::string name = path_.empty() || key.empty() ? path_ + key : path_ + "." + key;
   std::string place = line > 0 ? fmt::format("{}:{}", file_, line) : file_;
   return name.empty() ? place : place + ": " + name;
@@ -226,17 +232,17 @@ std::vector<std::string> TableReader::texts(const std::string& key) {
   return values;
 }
 
-TableReader TableReader::inside(const std::string& key, const toml::table& table, std::string path) const {
-  return {SharedTable(table_, &table), file_, std::move(path), own_inside(key, table)};
+TableReader TableReader::inside(const std::string& key, const toml::table& table, std::string path,
+                                std::size_t index) const {
+  return {SharedTable(table_, &table), file_, std::move(path), own_inside(key, index)};
 }
 
-SharedTable TableReader::own_inside(const std::string& key, const toml::table& table) const {
+SharedTable TableReader::own_inside(const std::string& key, std::size_t index) const {
   static const auto kNothing = std::make_shared<const toml::table>();
   if (!own_) return nullptr;
   const toml::node* own = own_->get(key);
-  if (!own) return kNothing;
-  if (const auto* sub = own->as_table()) return SharedTable(own_, sub);
-  return SharedTable(table_, &table);  // of an array, which is one's own as a whole
+  if (own && own->is_array()) own = own->as_array()->get(index);  // which is one's own as a whole
+  return own && own->is_table() ? SharedTable(own_, own->as_table()) : kNothing;
 }
 
 TableReader TableReader::table(const std::string& key) {
@@ -264,7 +270,8 @@ std::vector<TableReader> TableReader::tables(const std::string& key) {
   for (const toml::node& element : *array) {
     const auto* sub = element.as_table();
     if (!sub) throw error(key, "holds " + type_name(element), kTables);
-    readers.push_back(inside(key, *sub, fmt::format("{}{}{}[{}]", path_, path_.empty() ? "" : ".", key, index++)));
+    readers.push_back(inside(key, *sub, fmt::format("{}{}{}[{}]", path_, path_.empty() ? "" : ".", key, index), index));
+    ++index;
   }
   return readers;
 }

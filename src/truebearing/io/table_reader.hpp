@@ -66,7 +66,9 @@ class TableReader {
   /// Throws on the first key that nobody asked for and that was not taken over.
   void finish() const;
 
-  /// An error about this table or one of its keys, to throw.
+  /// What messages call this table or one of its keys: "study.toml:12: trackers.plain.q".
+  std::string where(const std::string& key = {}) const;
+  /// An error about that, to throw.
   InputError error(const std::string& key, const std::string& found, const std::string& valid = {}) const;
 
   const SharedTable& raw() const { return table_; }
@@ -80,9 +82,9 @@ class TableReader {
   /// valid: what an error says would be.
   const toml::node& required(const std::string& key, const std::string& valid);
   std::string mistyped(const std::vector<std::string>& wanted) const;
-  TableReader inside(const std::string& key, const toml::table& table, std::string path) const;
-  SharedTable own_inside(const std::string& key, const toml::table& table) const;
-  std::string where(const std::string& key) const;
+  /// index: where the key holds an array of tables.
+  TableReader inside(const std::string& key, const toml::table& table, std::string path, std::size_t index = 0) const;
+  SharedTable own_inside(const std::string& key, std::size_t index) const;
 
   SharedTable table_;
   SharedTable own_;

@@ -29,7 +29,7 @@ void check_measured(const Tracker& tracker, const std::string& where, const Scen
 
 void check_measured(const Study& study, const Measured& given, const std::string& giver) {
   const auto check = [&](const std::string& name) {
-    check_one(*study.make_tracker(name), study.path().string() + ": trackers." + name, given, giver);
+    check_one(*study.make_tracker(name), study.tracker(name).where, given, giver);
   };
   for (const TrackerSpec& spec : study.trackers()) {
     if (!spec.shown) continue;

@@ -28,22 +28,21 @@ void Study::check_trackers() {
       ask_for_study_keys(reader);
       const std::unique_ptr<Tracker> tracker = truebearing::make_tracker(spec.kind, reader, scenario_.get());
       check_replay(spec, *tracker);
-      check_measured(*tracker, path_.string() + ": trackers." + spec.name, *scenario_, sets_);
+      check_measured(*tracker, spec.where, *scenario_, sets_);
       if (spec.kind == kParticleLimit) check_limit(spec);
       continue;
     }
     for (const std::string& member : spec.correction->members())
       if (tracker(member).smoother)
-        throw InputError(path_.string() + ": trackers." + spec.name,
-                         "looks at \"" + member + "\", a smoother, which knows what is yet to be measured",
+        throw InputError(spec.where, "looks at \"" + member + "\", a smoother, which knows what is yet to be measured",
                          "trackers of other kinds");
       else if (tracker(member).correction)
-        throw InputError(path_.string() + ": trackers." + spec.name,
-                         "looks at \"" + member + "\", which is itself corrected", "trackers of other kinds");
+        throw InputError(spec.where, "looks at \"" + member + "\", which is itself corrected",
+                         "trackers of other kinds");
     check_teacher(spec);
     for (const auto& [quantity, threshold] : spec.correction->training.leave_out_beyond)
       if (scenario_->truth_space().quantity_index(quantity) < 0)
-        throw InputError(path_.string() + ": trackers." + spec.name + ".training.leave_out_beyond." + quantity,
+        throw InputError(spec.where + ".training.leave_out_beyond." + quantity,
                          "is no quantity of the scenario's truth");
     // Features that the records cannot give are refused here, not at the first step.
     const auto made = [&](const std::string& name) {
@@ -53,14 +52,14 @@ void Study::check_trackers() {
     };
     // A referee holds foretold positions against measured ones.
     if (spec.correction->bounds.referee && !made("")->blocks().measures_position)
-      throw InputError(path_.string() + ": trackers." + spec.name + ".referee",
+      throw InputError(spec.where + ".referee",
                        "wants measured positions, and the base \"" + spec.correction->design.base + "\" has others",
                        "a base that measures positions alone, or no referee");
     try {
       FeatureExtractor(spec.correction->design.features, made("")->space(), spec.correction->design.frame,
                        [&](const std::string& name) { return made(name)->blocks(); });
     } catch (const InputError& error) {
-      throw InputError(path_.string() + ": trackers." + spec.name + ": " + error.where(), error.found(), error.valid());
+      throw InputError(spec.where + ": " + error.where(), error.found(), error.valid());
     }
   }
 }
@@ -77,18 +76,17 @@ bool Study::lacks_motion(const TrackerSpec& spec) const {
 }
 
 void Study::check_smoother(const TrackerSpec& spec) const {
-  const std::string where = path_.string() + ": trackers." + spec.name;
   const std::vector<std::string> names = names_of(trackers_);
   const std::string& of = spec.smoother->of;
   if (std::find(names.begin(), names.end(), of) == names.end())
-    throw InputError(where + ".of", "names no tracker: \"" + of + "\"", suggestion(of, names));
+    throw InputError(spec.where + ".of", "names no tracker: \"" + of + "\"", suggestion(of, names));
   const TrackerSpec& filter = tracker(of);
   if (filter.correction || filter.smoother)
-    throw InputError(where + ".of", "is \"" + of + "\", which is no filter", "a filter of the study");
+    throw InputError(spec.where + ".of", "is \"" + of + "\", which is no filter", "a filter of the study");
   TableReader reader = tracker_reader(filter, filter.configuration, path_.string());
   const std::unique_ptr<Tracker> smoother =
-      make_smoother(truebearing::make_tracker(filter.kind, reader, scenario_.get()), *spec.smoother, where);
-  check_measured(*smoother, where, *scenario_, sets_);
+      make_smoother(truebearing::make_tracker(filter.kind, reader, scenario_.get()), *spec.smoother, spec.where);
+  check_measured(*smoother, spec.where, *scenario_, sets_);
 }
 
 // A smoother that stands for the truth, of the same state as what it teaches.
@@ -98,7 +96,7 @@ void Study::check_teacher(const TrackerSpec& spec) const {
   std::vector<std::string> smoothers;
   for (const TrackerSpec& other : trackers_)
     if (other.smoother) smoothers.push_back(other.name);
-  const std::string where = path_.string() + ": trackers." + spec.name + ".training.teacher";
+  const std::string where = spec.where + ".training.teacher";
   if (smoothers.empty())
     throw InputError(where, "is \"" + teacher + "\", and the study has no smoother", "a tracker of kind \"smoother\"");
   if (std::find(smoothers.begin(), smoothers.end(), teacher) == smoothers.end())
@@ -107,10 +105,9 @@ void Study::check_teacher(const TrackerSpec& spec) const {
 
 // What knows the family is a bound of it, named as one or not.
 void Study::check_limit(const TrackerSpec& spec) {
-  const std::string where = path_.string() + ": trackers." + spec.name;
   for (const auto& [name, set] : sets_)
     if (!are_one_family(*scenario_, *set))
-      throw InputError(where, "is the limit of the scenario's family, and the set \"" + name + "\" is of another",
+      throw InputError(spec.where, "is the limit of the scenario's family, and the set \"" + name + "\" is of another",
                        "sets that differ in their looks alone");
   const bool is_named = std::find(scoring_.bounds.begin(), scoring_.bounds.end(), spec.name) != scoring_.bounds.end();
   if (!is_limited(*scenario_)) {
@@ -136,11 +133,10 @@ std::string Study::note() const {
 void Study::check_replay(const TrackerSpec& spec, const Tracker& tracker) {
   const auto* recorded = dynamic_cast<const RecordedTracker*>(&tracker);
   if (!recorded || !recorded->replays_measurements()) return;
-  const std::string where = path_.string() + ": trackers." + spec.name;
   auto* logs = dynamic_cast<StepLogScenario*>(scenario_.get());
-  if (!logs) throw InputError(where, "has no log to replay", "a key `file`, or a scenario of kind \"step_logs\"");
+  if (!logs) throw InputError(spec.where, "has no log to replay", "a key `file`, or a scenario of kind \"step_logs\"");
   if (tracker.space() != logs->truth_space())
-    throw InputError(where + ".components", fmt::format("are {}", fmt::join(tracker.space().components, ", ")),
+    throw InputError(spec.where + ".components", fmt::format("are {}", fmt::join(tracker.space().components, ", ")),
                      fmt::format("{}, as the scenario's logs", fmt::join(logs->truth_space().components, ", ")));
   if (tracker.blocks().innovation) logs->require_innovation();
 }

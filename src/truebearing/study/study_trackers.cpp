@@ -93,8 +93,7 @@ std::unique_ptr<Tracker> Study::make_tracker(const std::string& name, const Corr
                                               given == models.end() ? load_model(name) : given->second,
                                               spec.correction->bounds);
   }
-  if (spec.smoother)
-    return make_smoother(make_tracker(spec.smoother->of), *spec.smoother, path_.string() + ": trackers." + name);
+  if (spec.smoother) return make_smoother(make_tracker(spec.smoother->of), *spec.smoother, spec.where);
   TableReader reader = tracker_reader(spec, configuration_of(name), path_.string());
   return truebearing::make_tracker(spec.kind, reader, scenario_.get());
 }

@@ -96,11 +96,12 @@ TrackerSpec read_tracker_spec(const std::string& name, const SharedTable& resolv
   spec.name = name;
   spec.own = own;
   TableReader reader(resolved, file, "trackers." + name, own);
+  spec.where = reader.where();
   spec.kind = reader.text("kind");
   spec.shown = reader.boolean_or("show", true);
   if (reader.has("tune")) {
     spec.tune = reader.texts("tune");
-    for (const std::string& path : spec.tune) numbers_at(*reader.raw(), path, file + ": trackers." + name + ".tune");
+    for (const std::string& path : spec.tune) numbers_at(*reader.raw(), path, reader.where("tune"));
   }
   ask_for_study_keys(reader);
   if (spec.kind == "corrected") {

@@ -23,6 +23,7 @@ struct SmootherSpec {
 struct TrackerSpec {
   std::string name;
   std::string kind;
+  std::string where;                         ///< what messages call it: "study.toml:12: trackers.plain"
   SharedTable configuration;                 ///< its table, over that of the tracker it is `like`
   SharedTable own;                           ///< what the study's file says of it itself
   std::vector<std::string> tune;             ///< dotted paths of the numbers that `truebearing tune` fits

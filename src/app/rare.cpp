@@ -80,7 +80,7 @@ ScoringRule rule_of(const Study& study, const RareArguments& arguments, const St
   return rule;
 }
 
-// The loss rate over plain runs, those of compare, and the standard error of a binomial.
+// The loss rate over plain runs, those of compare, and its standard error (share_of()).
 Estimate plain_loss(const TrackerSet& tracker, const NamedScenario& set, const ScoringRule& rule,
                     const RareArguments& arguments, std::uint64_t seed) {
   ComparisonOptions options;

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
+#include <utility>
 #include <vector>
 
 #include "truebearing/core/random.hpp"
@@ -134,6 +136,24 @@ TEST(Share, IsThatOfZerosAndOnes) {
   const Estimate exact = share_of({1.0, 0.0, 0.0, 1.0, 1.0});
   EXPECT_EQ(share.share().value, exact.value);
   EXPECT_EQ(share.share().se, exact.se);
+}
+
+// By the prior's own integrals: Beta(k + 1/2, n - k + 1/2) on a fine grid.
+TEST(Share, HasTheStandardErrorOfJeffreys) {
+  for (const auto& [ones, count] : {std::pair(0.0, 20.0), std::pair(3.0, 20.0), std::pair(20.0, 20.0)}) {
+    double mass = 0.0, first = 0.0, second = 0.0;
+    constexpr int kCells = 20000;
+    for (int i = 0; i < kCells; ++i) {
+      const double angle = std::numbers::pi / 2.0 * (i + 0.5) / kCells, p = std::sin(angle) * std::sin(angle);
+      const double weight = std::pow(p, ones) * std::pow(1.0 - p, count - ones);  // dp / sqrt(p (1 - p)) = 2 dangle
+      mass += weight;
+      first += weight * p;
+      second += weight * p * p;
+    }
+    const double mean = first / mass;
+    EXPECT_NEAR(share_of(ones, count).se, std::sqrt(second / mass - mean * mean), 1e-9) << ones;
+  }
+  EXPECT_NEAR(share_of(100.0, 1000.0).se, std::sqrt(0.1 * 0.9 / 1000.0), 2e-5) << "as that of a binomial";
 }
 
 }  // namespace

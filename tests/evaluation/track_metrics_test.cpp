@@ -52,7 +52,7 @@ TEST(TrackMetrics, ByHand) {
   EXPECT_EQ(find_metric(found, "excursion_runs").value, 3.0);
   EXPECT_EQ(find_metric(found, "clean_runs").value, 2.0);
   EXPECT_DOUBLE_EQ(find_metric(found, "bad_share").value, 0.4);
-  EXPECT_DOUBLE_EQ(find_metric(found, "bad_share").se, std::sqrt(0.4 * 0.6 / 5.0));
+  EXPECT_DOUBLE_EQ(find_metric(found, "bad_share").se, std::sqrt(2.5 * 3.5 / 7.0) / 6.0);
   EXPECT_DOUBLE_EQ(find_metric(found, "clean_mse").value, (1 + 1 + 9 + 4 * 4) / 7.0);
   EXPECT_DOUBLE_EQ(find_metric(found, "clean_mse").se, 0.5 * std::abs(11.0 / 3.0 - 4.0)) << "over runs";
   EXPECT_EQ(find_metric(found, "clean_mse").unit, "deg^2");

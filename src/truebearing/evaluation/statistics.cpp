@@ -96,8 +96,8 @@ Estimate share_of(const std::vector<double>& values) {
 
 Estimate share_of(double ones, double count) {
   if (count == 0.0) return {kNaN, kNaN};
-  const double p = ones / count;
-  return {p, std::sqrt(p * (1.0 - p) / count)};
+  const double a = ones + 0.5, b = count - ones + 0.5;  // of the beta distribution
+  return {ones / count, std::sqrt(a * b / (count + 2.0)) / (count + 1.0)};
 }
 
 Estimate standard_deviation_of(const std::vector<double>& values) {

@@ -42,7 +42,8 @@ Estimate pooled_mse(const std::vector<SquaredErrors>& runs);
 
 /// Mean of independent values.
 Estimate mean_of(const std::vector<double>& values);
-/// Mean of values that are 0 or 1, with the standard error of a binomial.
+/// Mean of values that are 0 or 1. Its standard error is the standard deviation of the probability under Jeffreys' prior
+/// (Brown, Cai and DasGupta 2001): that of a binomial where both are seen often, and not 0 where one of them never was.
 Estimate share_of(const std::vector<double>& values);
 Estimate share_of(double ones, double count);
 /// Of independent values, the standard deviation, about the mean, over n - 1; its standard error is the jackknife.

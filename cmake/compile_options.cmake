@@ -7,6 +7,16 @@ function(truebearing_options target)
   # The same bits on every build of one machine: no contraction into fused multiply-adds, whatever -march says.
   target_compile_options(${target} PRIVATE -ffp-contract=off -fno-math-errno)
   truebearing_harden(${target})
+  # Rooms are long translation units: GCC spends a twelfth of its time on collecting garbage, which it need not where the
+  # machine has memory for each of its processors.
+  if(TRUEBEARING_BUILD_BY_ROOM AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    cmake_host_system_information(RESULT memory_MiB QUERY TOTAL_PHYSICAL_MEMORY)
+    cmake_host_system_information(RESULT processors QUERY NUMBER_OF_LOGICAL_CORES)
+    math(EXPR each_MiB "${memory_MiB} / ${processors}")
+    if(each_MiB GREATER_EQUAL 4096)
+      target_compile_options(${target} PRIVATE --param=ggc-min-heapsize=2000000)  # KiB
+    endif()
+  endif()
   if(TRUEBEARING_SANITIZE)
     # Left out are the four checks of every pointer, which double the time to compile Eigen; the address sanitizer
     # sees the accesses themselves.
@@ -44,6 +54,14 @@ endfunction()
 function(truebearing_simd_sources)
   set_source_files_properties(${ARGN} TARGET_DIRECTORY truebearing PROPERTIES SKIP_PRECOMPILE_HEADERS ON
                               COMPILE_OPTIONS "-fopenmp-simd;-fno-trapping-math;-fno-math-errno;-ffp-contract=fast")
+endfunction()
+
+# truebearing_scalar_sources(FILE...): small matrices, coefficient by coefficient. A vector of two that have just been
+# stored one by one waits until both have left the processor's store buffer; in a filter's step, which is one chain, that
+# costs more than it saves. No precompiled header, as above.
+function(truebearing_scalar_sources)
+  set_source_files_properties(${ARGN} TARGET_DIRECTORY truebearing PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
+  set_property(SOURCE ${ARGN} TARGET_DIRECTORY truebearing APPEND PROPERTY COMPILE_OPTIONS -fno-tree-vectorize)
 endfunction()
 
 # truebearing_leave_unsanitized(FILE...): nothing but dense arithmetic, no input and no memory of its own, long to compile

@@ -23,7 +23,8 @@ struct Ldlt {
   Vector inverse_D;
   bool valid = true;  ///< all pivots were finite and at least `least`
 
-  EIGEN_ALWAYS_INLINE Ldlt(const Matrix& A, const Vector& least) : L(A) {
+  EIGEN_ALWAYS_INLINE Ldlt(const Matrix& A, const Vector& least) {
+    copy(A, L);
     for (int k = 0; k < N; ++k) {
       valid &= (L(k, k) >= least(k)) & (L(k, k) <= std::numeric_limits<Scalar>::max());
       inverse_D(k) = 1 / L(k, k);

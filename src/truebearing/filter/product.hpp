@@ -54,8 +54,8 @@ template <typename Scalar, int N>
 EIGEN_ALWAYS_INLINE StepStatus commit(bool valid, const Eigen::Matrix<Scalar, N, 1>& new_x,
                                       const Eigen::Matrix<Scalar, N, N>& new_P, Eigen::Matrix<Scalar, N, 1>& x,
                                       Eigen::Matrix<Scalar, N, N>& P) {
-  Scalar zero = new_x(0) - new_x(0);  // of finite numbers only
-  for (int i = 1; i < N; ++i) zero += new_x(i) - new_x(i);
+  Scalar zero = 0;  // of finite numbers only; from the first on, for pairs of them to be those that are stored together
+  for (int i = 0; i < N; ++i) zero += new_x(i) - new_x(i);
   if (!(valid & (zero >= 0))) return StepStatus::failed;
   copy(new_x, x);
   copy(new_P, P);

@@ -24,6 +24,8 @@ FilterTracker::FilterTracker(const StateSpace& space, std::unique_ptr<TrackedSta
       options_(options),
       state_(std::move(state)),
       kept_(state_->fresh()),
+      published_(space.size()),
+      copy_(copy_of(state_->size(), published_)),
       ahead_(options_.ahead_s > 0.0 ? state_->fresh() : nullptr),
       challenger_(state_->fresh()) {
   check();
@@ -199,7 +201,7 @@ StepStatus FilterTracker::cross(double dt_s, TrackedState& state) const {
 bool FilterTracker::predict(double dt_s) {
   record_.status = cross(dt_s, *state_);
   Prediction& prediction = record_.prediction.emplace(Unfilled());
-  const bool sensible = copy_published(state_->x_data(), state_->P_data(), prediction.x, prediction.P);
+  const bool sensible = copy_published(*state_, prediction.x, prediction.P);
   // A failed prediction leaves the filter where it was, which is not where it would be by now.
   if (record_.status == StepStatus::failed) {
     ++guard_.counts.failed;
@@ -259,7 +261,7 @@ StepStatus FilterTracker::update(const Measurement& measurement) {
     }
   }
   if (options_.output_pull > 0.0) pull(taken);
-  if (space_->size() < state_->size()) gain.conservativeResize(space_->size(), Eigen::NoChange);
+  if (published_ < state_->size()) gain.conservativeResize(published_, Eigen::NoChange);
   return StepStatus::ok;
 }
 

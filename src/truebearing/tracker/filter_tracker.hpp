@@ -99,8 +99,12 @@ class FilterTracker : public Successor {
   void clear_blocks();
 
   // What is published (filter_tracker_publishing.cpp).
+  using Copy = bool (*)(const double* from_x, const double* from_P, int n, BoundedVector& x, BoundedMatrix& P);
+  static Copy copy_of(int states, int published);
   bool publish();
-  bool copy_published(const double* from_x, const double* from_P, BoundedVector& x, BoundedMatrix& P) const;
+  void publish_ahead();
+  void publish_pulled();
+  bool copy_published(const TrackedState& state, BoundedVector& x, BoundedMatrix& P) const;
   void copy_published(const StatePack& pack, int lane, BoundedVector& x, BoundedMatrix& P) const;
   void pull(const AnyMeasurement& taken);
 
@@ -120,6 +124,8 @@ class FilterTracker : public Successor {
   // At the last measurement that was used, between steps. Within one the state goes on, and what it was is kept.
   std::unique_ptr<TrackedState> state_;
   std::unique_ptr<TrackedState> kept_;
+  int published_;                        // components: those that the space has
+  Copy copy_;                            // of them, with states of that length
   std::unique_ptr<TrackedState> ahead_;  // of state_ after ahead_s, for publishing
   // Where the state is held in state_'s place, while several trackers are stepped together.
   mutable PlaceInPack place_;

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "truebearing/core/with_count.hpp"
+#include "truebearing/filter/small_matrix.hpp"
 #include "truebearing/tracker/filter_tracker.hpp"
 #include "truebearing/tracker/publishable.hpp"
 
@@ -29,8 +30,7 @@ EIGEN_ALWAYS_INLINE bool is_sensible(const Eigen::Matrix<double, N, 1>& x, const
 
 // The first n of N components into x (n), P (n x n). False where it is no track (is_sensible()).
 template <int N>
-[[gnu::noinline]] bool copy_first(const double* from_x, const double* from_P, int n, BoundedVector& x,
-                                  BoundedMatrix& P) {
+bool copy_first(const double* from_x, const double* from_P, int n, BoundedVector& x, BoundedMatrix& P) {
   const Eigen::Map<const Eigen::Matrix<double, N, 1>> whole_x(from_x);
   const Eigen::Map<const Eigen::Matrix<double, N, N>> whole_P(from_P);
   x = whole_x.head(n);
@@ -40,10 +40,11 @@ template <int N>
 
 // All of them. They are read once: after that the compiler could not know that x and P are elsewhere.
 template <int N>
-EIGEN_ALWAYS_INLINE bool copy_whole(const double* from_x, const double* from_P, BoundedVector& x, BoundedMatrix& P) {
+bool copy_whole(const double* from_x, const double* from_P, int, BoundedVector& x, BoundedMatrix& P) {
   using Vector = Eigen::Matrix<double, N, 1>;
   using Matrix = Eigen::Matrix<double, N, N>;
-  const Vector whole_x = Eigen::Map<const Vector>(from_x);
+  Vector whole_x;
+  for (int i = 0; i < N; ++i) whole_x(i) = by_itself(from_x[i]);  // as a filter has just stored them
   const Matrix whole_P = Eigen::Map<const Matrix>(from_P);
   x.resize(N);
   P.resize(N, N);
@@ -57,35 +58,42 @@ EIGEN_ALWAYS_INLINE bool copy_whole(const double* from_x, const double* from_P, 
 // False where the state is no track; what it is stands in the record all the same. Where it cannot be carried so far
 // ahead, the record says `failed`, and the filter goes on.
 bool FilterTracker::publish() {
-  const bool sensible = copy_published(state_->x_data(), state_->P_data(), record_.x, record_.P);
-  if (ahead_) {
-    ahead_->assign(*state_);
-    const bool crossed = ahead_->predict(options_.ahead_s) == StepStatus::ok;
-    if (!copy_published(ahead_->x_data(), ahead_->P_data(), record_.x, record_.P) || !crossed)
-      record_.status = StepStatus::failed;
-  }
-  if (options_.output_pull > 0.0 && record_.gain) {
-    record_.x.head(moved_.size()) += moved_;
-    record_.P.topLeftCorner(moved_.size(), moved_.size()) += spread_;
-  }
+  const bool sensible = copy_published(*state_, record_.x, record_.P);
+  if (ahead_)
+    publish_ahead();
+  else if (options_.output_pull > 0.0)
+    publish_pulled();
   if (const ModeVector* probabilities = state_->mode_probabilities()) record_.mode_probabilities = *probabilities;
   return sensible;
 }
 
+void FilterTracker::publish_ahead() {
+  ahead_->assign(*state_);
+  const bool crossed = ahead_->predict(options_.ahead_s) == StepStatus::ok;
+  if (!copy_published(*ahead_, record_.x, record_.P) || !crossed) record_.status = StepStatus::failed;
+}
+
+void FilterTracker::publish_pulled() {
+  if (!record_.gain) return;
+  record_.x.head(moved_.size()) += moved_;
+  record_.P.topLeftCorner(moved_.size(), moved_.size()) += spread_;
+}
+
+FilterTracker::Copy FilterTracker::copy_of(int states, int published) {
+  Copy copy = nullptr;
+  with_count(states,
+             [&]<int N>(std::integral_constant<int, N>) { copy = published == N ? copy_whole<N> : copy_first<N>; });
+  return copy;
+}
+
 // Without the components that the space does not have. False where the state is no track (is_sensible()).
-bool FilterTracker::copy_published(const double* from_x, const double* from_P, BoundedVector& x,
-                                   BoundedMatrix& P) const {
-  const int n = space_->size();
-  bool sensible = true;
-  with_count(state_->size(), [&]<int N>(std::integral_constant<int, N>) {
-    sensible = n == N ? copy_whole<N>(from_x, from_P, x, P) : copy_first<N>(from_x, from_P, n, x, P);
-  });
-  return sensible;
+bool FilterTracker::copy_published(const TrackedState& state, BoundedVector& x, BoundedMatrix& P) const {
+  return copy_(state.x_data(), state.P_data(), published_, x, P);
 }
 
 // The same of a lane of a pack, which has said that it is a track (StatePack::within()).
 void FilterTracker::copy_published(const StatePack& pack, int lane, BoundedVector& x, BoundedMatrix& P) const {
-  const int n = space_->size(), all = state_->size();
+  const int n = published_, all = state_->size();
   x.resize(all);
   P.resize(all, all);
   pack.estimate(lane, x.data(), P.data());

@@ -30,10 +30,10 @@ namespace {
 
 constexpr Range kTurnRate_degps{-90.0, 90.0};
 
-// `model` with the frequency where the layout has it.
-template <typename Model>
+// `model` of a target in D dimensions; with the frequency where the layout has it, which is in the plane.
+template <int D, typename Model>
 std::shared_ptr<const AnyMotion> laid_out(const Model& model, const MotionLayout& layout, std::string_view rest = {}) {
-  if constexpr (Model::kStates >= 4 && Model::kStates < kMaxDimension)
+  if constexpr (D == 2)
     if (layout.has_frequency) return erased(WithFrequency<Model>{model, layout.frequency_q_hz2ps}, rest);
   return erased(model, rest);
 }
@@ -74,7 +74,7 @@ std::shared_ptr<const AnyMotion> constant_velocity(TableReader& motion, const Mo
     const ConstantVelocity<2, AnyNoise<4>> level{read_noise<2>(motion, factor)};
     return above(level, read_vertical(motion, factor));
   }
-  return laid_out(ConstantVelocity<D, AnyNoise<2 * D>>{read_noise<D>(motion, layout.process_noise_factor)}, layout);
+  return laid_out<D>(ConstantVelocity<D, AnyNoise<2 * D>>{read_noise<D>(motion, layout.process_noise_factor)}, layout);
 }
 
 template <int D>
@@ -82,21 +82,21 @@ std::shared_ptr<const AnyMotion> constant_acceleration(TableReader& motion, cons
   const double factor = layout.process_noise_factor;
   if (motion.choice("noise", {"continuous", "discrete"}) == "continuous") {
     const ContinuousWhiteJerk noise{motion.number("q_m2ps5", kNonNegative) * factor};
-    return laid_out(ConstantAcceleration<D, ContinuousWhiteJerk>{noise}, layout, "accelerations");
+    return laid_out<D>(ConstantAcceleration<D, ContinuousWhiteJerk>{noise}, layout, "accelerations");
   }
   const DiscreteAccelerationStep noise{motion.number("sigma_mps2", kNonNegative) * std::sqrt(factor)};
-  return laid_out(ConstantAcceleration<D, DiscreteAccelerationStep>{noise}, layout, "accelerations");
+  return laid_out<D>(ConstantAcceleration<D, DiscreteAccelerationStep>{noise}, layout, "accelerations");
 }
 
 std::shared_ptr<const AnyMotion> constant_jerk(TableReader& motion, const MotionLayout& layout) {
   const double q = motion.number("q_m2ps7", kNonNegative) * layout.process_noise_factor;
-  return laid_out(ConstantJerk<1>{q}, layout, "accelerations");
+  return laid_out<1>(ConstantJerk<1>{q}, layout, "accelerations");
 }
 
 template <int D>
 std::shared_ptr<const AnyMotion> singer(TableReader& motion, const MotionLayout& layout) {
   const double sigma = motion.number("sigma_a_mps2", kPositive) * std::sqrt(layout.process_noise_factor);
-  return laid_out(Singer<D>{sigma, motion.number("time_constant_s", kPositive)}, layout, "accelerations");
+  return laid_out<D>(Singer<D>{sigma, motion.number("time_constant_s", kPositive)}, layout, "accelerations");
 }
 
 // The noises of turns, which are level: in space the vertical channel has one of its own.
@@ -114,7 +114,7 @@ TurnNoise read_turn_noise(TableReader& motion, const MotionLayout& layout) {
 std::shared_ptr<const AnyMotion> coordinated_turn(const TurnNoise& noise, double rate_degps,
                                                   const MotionLayout& layout) {
   const CoordinatedTurn<AnyNoise<4>> turn{noise.level, radians(rate_degps)};
-  return noise.vertical ? above(turn, *noise.vertical) : laid_out(turn, layout);
+  return noise.vertical ? above(turn, *noise.vertical) : laid_out<2>(turn, layout);
 }
 
 std::shared_ptr<const AnyMotion> coordinated_turn(TableReader& motion, const MotionLayout& layout) {
@@ -127,7 +127,7 @@ std::shared_ptr<const AnyMotion> turning_target(TableReader& motion, const Motio
   const double wander = radians(motion.number("turn_rate_noise_degps2", kNonNegative) * std::sqrt(factor));
   const TurnNoise noise = read_turn_noise(motion, layout);
   const TurningTarget<AnyNoise<4>> turning{noise.level, wander};
-  return noise.vertical ? above(turning, *noise.vertical, "turn rate") : laid_out(turning, layout, "turn rate");
+  return noise.vertical ? above(turning, *noise.vertical, "turn rate") : laid_out<2>(turning, layout, "turn rate");
 }
 
 std::shared_ptr<const AnyMotion> lorenz_attractor(TableReader& motion, const MotionLayout& layout) {

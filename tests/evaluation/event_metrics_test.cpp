@@ -46,7 +46,7 @@ TEST(EventMetrics, ByHand) {
   };
   const std::vector<Metric> found = metrics(kSource, runs);
   EXPECT_DOUBLE_EQ(find_metric(found, "source_change_share").value, 2.0 / 5.0) << "runs, not events";
-  EXPECT_DOUBLE_EQ(find_metric(found, "source_change_share").se, std::sqrt(0.4 * 0.6 / 5.0));
+  EXPECT_DOUBLE_EQ(find_metric(found, "source_change_share").se, std::sqrt(2.5 * 3.5 / 7.0) / 6.0);
   EXPECT_EQ(find_metric(found, "turn_delay").unit, "s");
   EXPECT_DOUBLE_EQ(find_metric(found, "turn_delay").value, (20.0 + 100.0) / 2.0) << "the first one from the turn on";
   EXPECT_DOUBLE_EQ(find_metric(found, "turn_found_share").value, 2.0 / 3.0) << "of the runs that turn";

@@ -44,7 +44,7 @@ TEST(TimeMetrics, OfQuantitiesByHand) {
   EXPECT_DOUBLE_EQ(find_metric(metrics, "nees", 60.0).value, 4.0);
   EXPECT_DOUBLE_EQ(find_metric(metrics, "coverage95", 60.0).value, 2.0 / 3.0) << "7 is beyond 5.99";
   EXPECT_DOUBLE_EQ(find_metric(metrics, "loss_rate", 60.0).value, 1.0 / 3.0);
-  EXPECT_DOUBLE_EQ(find_metric(metrics, "loss_rate", 60.0).se, std::sqrt(2.0 / 27.0));
+  EXPECT_DOUBLE_EQ(find_metric(metrics, "loss_rate", 60.0).se, std::sqrt(1.5 * 2.5 / 5.0) / 4.0);
   EXPECT_EQ(find_metric(metrics, "missing_share", 60.0).value, 0.0);
 }
 

@@ -39,7 +39,7 @@ TEST(CorrectionSpec, RefereeOfABaseThatMeasuresNoPositionIsRefused) {
   folder.write("small.toml", testing::replaced(with_referee, "\"position\", variance_m2 = 1e7",
                                                "\"position_velocity\", sigma_m = 3162.0, velocity_sigma_mps = 10.0"));
   const std::string error = error_message([&] { Study::load(path); });
-  EXPECT_THAT(error, HasSubstr(": trackers.nfnn.referee"));
+  EXPECT_THAT(error, ::testing::ContainsRegex("small.toml:[0-9]+: trackers.nfnn.referee"));
   EXPECT_THAT(error, HasSubstr("\"plain\""));
 }
 

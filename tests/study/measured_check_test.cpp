@@ -44,8 +44,9 @@ std::string refusal(const std::string& study) {
 TEST(MeasuredCheck, TrackerOfSomethingElseIsRefusedByName) {
   EXPECT_EQ(refusal(study_on("cho_s1", kBatch)), "no error");
   EXPECT_THAT(refusal(study_on("radar_1d_paper", kBatch)),
-              HasSubstr("trackers.batch: measures bearing (bearing_deg), the scenario gives position "
-                        "(position_m)"));
+              ::testing::ContainsRegex(
+                  "pairs.toml:[0-9]+: trackers.batch: measures bearing .bearing_deg., the scenario gives position "
+                  ".position_m."));
   EXPECT_THAT(refusal(study_on("cho_s1", kRaw)),
               HasSubstr("trackers.raw: measures position (position_m), the scenario gives bearing (bearing_deg)"));
   EXPECT_THAT(refusal(study_on("array_a_0db", kRaw)), HasSubstr("the scenario gives snapshots (snapshots)"));

@@ -24,7 +24,7 @@ struct Ldlt {
   bool valid = true;  ///< all pivots were finite and at least `least`
 
   EIGEN_ALWAYS_INLINE Ldlt(const Matrix& A, const Vector& least) {
-    copy(A, L);
+    copy(A, L);  // one by one, as A was stored
     for (int k = 0; k < N; ++k) {
       valid &= (L(k, k) >= least(k)) & (L(k, k) <= std::numeric_limits<Scalar>::max());
       inverse_D(k) = 1 / L(k, k);

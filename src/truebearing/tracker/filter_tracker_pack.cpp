@@ -47,7 +47,7 @@ void FilterTrackerPack::step(std::span<Lane> lanes) {
   }
   if (together == 0) return;
 
-  const int positions = tracker_of(lanes.front()).space_->size() / 2;
+  const int positions = tracker_of(lanes.front()).published_ / 2;
   const auto sensible = [&](LaneMask some) { return states_->within(some, positions, kFarthest_m); };
   LaneMask done = sensible(states_->predict(together, dt_s.data()));
   each_of(done, [&](int place, FilterTracker& tracker, Lane& lane) {
@@ -98,7 +98,7 @@ bool FilterTracker::settle(const StatePack& pack, int lane, const Measurement& m
   forget_challenger();
   failed_in_row_ = 0;
   with_length(taken, [&](const auto& sized) { innovation.z = sized.z; });
-  if (space_->size() < state_->size()) gain.conservativeResize(space_->size(), Eigen::NoChange);
+  if (published_ < state_->size()) gain.conservativeResize(published_, Eigen::NoChange);
   if (state_->mode_probabilities()) pack.mode_probabilities(lane, record_.mode_probabilities.emplace());
   record_.status = StepStatus::ok;
   passage_.used = true;

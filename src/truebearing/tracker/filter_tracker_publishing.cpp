@@ -6,7 +6,6 @@
 #include <type_traits>
 
 #include "truebearing/core/with_count.hpp"
-#include "truebearing/filter/small_matrix.hpp"
 #include "truebearing/tracker/filter_tracker.hpp"
 #include "truebearing/tracker/publishable.hpp"
 
@@ -43,8 +42,7 @@ template <int N>
 bool copy_whole(const double* from_x, const double* from_P, int, BoundedVector& x, BoundedMatrix& P) {
   using Vector = Eigen::Matrix<double, N, 1>;
   using Matrix = Eigen::Matrix<double, N, N>;
-  Vector whole_x;
-  for (int i = 0; i < N; ++i) whole_x(i) = by_itself(from_x[i]);  // as a filter has just stored them
+  const Vector whole_x = Eigen::Map<const Vector>(from_x);
   const Matrix whole_P = Eigen::Map<const Matrix>(from_P);
   x.resize(N);
   P.resize(N, N);

@@ -35,6 +35,12 @@ class SquareMatrices : public ::testing::Test {
     return (P + P.transpose()) / 2.0;
   }
 
+  // Compiled once for each size: what is under test is written out wherever it stands.
+  [[gnu::noinline]] static bool semidefinite(const Square& P) { return is_positive_semidefinite<kSize, double>(P); }
+  [[gnu::noinline]] static Square lower_root(const Square& P) { return semidefinite_root<kSize, double>(P); }
+  [[gnu::noinline]] static Square upper_root(const Square& P) { return upper_semidefinite_root<kSize, double>(P); }
+  [[gnu::noinline]] static void triangular(Square& A, Square& B) { triangularize<kSize, kSize, double>(A, B); }
+
   RandomStream random{{.seed = kSize}, StreamId::test};
 };
 
@@ -48,7 +54,7 @@ TYPED_TEST(SquareMatrices, PositiveOnesAreFoundToBeAtAnyScale) {
   for (const double scale : {1e-290, 1e-150, 1e-30, 1.0, 1e30, 1e150, 1e290})
     for (int k = 0; k < 200; ++k) {
       const auto P = this->covariance(k % 2 ? 1e-6 : 0.5, scale, 8.0);
-      EXPECT_TRUE((is_positive_semidefinite<TestFixture::kSize, double>(P))) << scale << "\n" << P;
+      EXPECT_TRUE(TestFixture::semidefinite(P)) << scale << "\n" << P;
     }
 }
 
@@ -57,7 +63,7 @@ TYPED_TEST(SquareMatrices, IndefiniteOnesAreFoundToBeAtAnyScale) {
   for (const double scale : {1e-290, 1e-150, 1e-30, 1.0, 1e30, 1e150, 1e290})
     for (int k = 0; k < 200; ++k) {
       const auto P = this->covariance(k % 2 ? -1e-6 : -0.5, scale, 8.0);
-      EXPECT_FALSE((is_positive_semidefinite<TestFixture::kSize, double>(P))) << scale << "\n" << P;
+      EXPECT_FALSE(TestFixture::semidefinite(P)) << scale << "\n" << P;
     }
 }
 
@@ -68,7 +74,7 @@ TYPED_TEST(SquareMatrices, OnesOfNegativeVariancesAreNot) {
     auto P = this->covariance(0.5, 1.0, 2.0);
     for (int i = 0; i < N; ++i)
       if (negative >> i & 1) P(i, i) *= -1.0;
-    EXPECT_FALSE((is_positive_semidefinite<N, double>(P))) << P;
+    EXPECT_FALSE(TestFixture::semidefinite(P)) << P;
   }
 }
 
@@ -88,7 +94,7 @@ TYPED_TEST(SquareMatrices, RoundingHasNoSayBehindTwoVariablesThatAreOne) {
         P(2, 2) = c * c;
         P(0, 2) = P(2, 0) = correlation * a * c;
         P(1, 2) = P(2, 1) = correlation * b * c;
-        ASSERT_FALSE((is_positive_semidefinite<N, double>(P))) << P;
+        ASSERT_FALSE(TestFixture::semidefinite(P)) << P;
       }
   }
 }
@@ -96,11 +102,11 @@ TYPED_TEST(SquareMatrices, RoundingHasNoSayBehindTwoVariablesThatAreOne) {
 TYPED_TEST(SquareMatrices, SingularOnesAreSemidefinite) {
   constexpr int N = TestFixture::kSize;
   using Matrix = typename TestFixture::Square;
-  EXPECT_TRUE((is_positive_semidefinite<N, double>(Matrix::Zero())));
-  EXPECT_TRUE((is_positive_semidefinite<N, double>(Matrix::Ones())));
+  EXPECT_TRUE(TestFixture::semidefinite(Matrix::Zero()));
+  EXPECT_TRUE(TestFixture::semidefinite(Matrix::Ones()));
   Matrix one = Matrix::Zero();
   one(N - 1, N - 1) = 1.0;
-  EXPECT_TRUE((is_positive_semidefinite<N, double>(one)));
+  EXPECT_TRUE(TestFixture::semidefinite(one));
 }
 
 TYPED_TEST(SquareMatrices, OnesThatAreNotFiniteAreNot) {
@@ -110,19 +116,19 @@ TYPED_TEST(SquareMatrices, OnesThatAreNotFiniteAreNot) {
       for (int i = j; i < N; ++i) {
         auto P = this->covariance(0.5, 1.0, 2.0);
         P(i, j) = P(j, i) = value;
-        EXPECT_FALSE((is_positive_semidefinite<N, double>(P))) << P;
+        EXPECT_FALSE(TestFixture::semidefinite(P)) << P;
       }
   typename TestFixture::Square infinite = TestFixture::Square::Identity();
   infinite.diagonal().setConstant(HUGE_VAL);
-  EXPECT_FALSE((is_positive_semidefinite<N, double>(infinite)));
+  EXPECT_FALSE(TestFixture::semidefinite(infinite));
 }
 
 TYPED_TEST(SquareMatrices, RootsAreTriangularAndSquareToTheMatrix) {
   constexpr int N = TestFixture::kSize;
   for (int k = 0; k < 200; ++k) {
     const auto P = this->covariance(1e-3, 1.0, 6.0);
-    const auto L = semidefinite_root<N, double>(P);
-    const auto U = upper_semidefinite_root<N, double>(P);
+    const auto L = TestFixture::lower_root(P);
+    const auto U = TestFixture::upper_root(P);
     for (int j = 0; j < N; ++j)
       for (int i = 0; i < N; ++i) {
         const double size = std::sqrt(P(i, i) * P(j, j));
@@ -142,16 +148,16 @@ TYPED_TEST(SquareMatrices, RootsOfSingularOnesSquareToThemAndOfIndefiniteOnesAre
   for (int k = 0; k < 200; ++k) {
     const auto a = TestFixture::Column::NullaryExpr([&] { return this->random.normal(); }).eval();
     const Matrix P = a * a.transpose();
-    const auto L = semidefinite_root<N, double>(P);
-    const auto U = upper_semidefinite_root<N, double>(P);
+    const auto L = TestFixture::lower_root(P);
+    const auto U = TestFixture::upper_root(P);
     for (int j = 0; j < N; ++j)
       for (int i = 0; i < N; ++i) {
         EXPECT_NEAR((L * L.transpose())(i, j), P(i, j), 1e-13 * std::abs(P(i, j)));
         EXPECT_NEAR((U * U.transpose())(i, j), P(i, j), 1e-13 * std::abs(P(i, j)));
       }
     const auto indefinite = this->covariance(-1e-6, 1.0, 8.0);
-    EXPECT_TRUE((semidefinite_root<N, double>(indefinite).diagonal().array().isNaN().all())) << indefinite;
-    EXPECT_TRUE((upper_semidefinite_root<N, double>(indefinite).diagonal().array().isNaN().all())) << indefinite;
+    EXPECT_TRUE(TestFixture::lower_root(indefinite).diagonal().array().isNaN().all()) << indefinite;
+    EXPECT_TRUE(TestFixture::upper_root(indefinite).diagonal().array().isNaN().all()) << indefinite;
   }
 }
 
@@ -162,14 +168,14 @@ TYPED_TEST(SquareMatrices, TriangularizeKeepsTheProductAndWhatIsTriangular) {
     const auto coefficient = [&] { return this->random.uniform() < 0.3 ? 0.0 : this->random.normal(); };
     const Matrix A = Matrix::NullaryExpr(coefficient), B = Matrix::NullaryExpr(coefficient);
     Matrix zero = A, U = B;
-    triangularize<N, N, double>(zero, U);
+    TestFixture::triangular(zero, U);
     EXPECT_LE((U * U.transpose() - A * A.transpose() - B * B.transpose()).norm(),
               1e-14 * (A.squaredNorm() + B.squaredNorm()));
     EXPECT_EQ(zero, Matrix::Zero());
     for (int j = 0; j < N; ++j)
       for (int i = j + 1; i < N; ++i) EXPECT_EQ(U(i, j), 0.0);
     const Matrix before = U;
-    triangularize<N, N, double>(zero, U);
+    TestFixture::triangular(zero, U);
     EXPECT_EQ(U, before);
   }
 }

@@ -150,7 +150,7 @@ std::shared_ptr<const AnyMotion> learned(TableReader& motion, const MotionLayout
         fmt::format("{}, as \"around\" has; run `truebearing train {}`", around->states(), motion.file()));
   std::shared_ptr<const AnyMotion> made;
   with_count(around->states(), [&]<int N>(std::integral_constant<int, N>) {
-    if constexpr (N >= 2 && N <= 9)
+    if constexpr (N >= 2 && N <= 9 && N != 8)  // as filters are (filter_kinds.hpp)
       made = erased(LearnedMotion<N>{std::static_pointer_cast<const SizedMotion<N>>(around), residual}, around->rest());
   });
   return made;

@@ -4,6 +4,5 @@
 namespace truebearing {
 
 TRUEBEARING_EACH_LENGTH(template class, TRUEBEARING_SQUARE_ROOT_STATE);
-TRUEBEARING_EACH_LENGTH(template class, TRUEBEARING_CONVENTIONAL_STATE);
 
 }  // namespace truebearing

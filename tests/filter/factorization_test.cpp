@@ -3,11 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "truebearing/core/constants.hpp"
+#include "truebearing/core/linear_algebra.hpp"
 #include "truebearing/core/random.hpp"
 
 namespace truebearing::factorization_test {
@@ -25,7 +26,7 @@ class SquareMatrices : public ::testing::Test {
     const Square A = Square::NullaryExpr([&] { return random.normal(); });
     Column eigenvalues = Column::NullaryExpr([&] { return random.uniform(0.5, 2.0); });
     eigenvalues[0] = least;
-    const Square Q = Eigen::SelfAdjointEigenSolver<Square>(A + A.transpose()).eigenvectors();
+    const Square Q = symmetric_modes<Eigen::Dynamic>(A + A.transpose()).vectors;
     Square P = Q * eigenvalues.asDiagonal() * Q.transpose();
     for (int i = 0; i < kSize; ++i) {
       const double sigma = std::sqrt(scale) * std::pow(10.0, random.uniform(-decades, decades) / 2.0);
